@@ -1,8 +1,7 @@
-//! What went up the line in the last seconds, in RAM that a reset leaves as it is: after a fault it stays until somebody
-//! has fetched it.
+//! The last seconds of telemetry, in RAM that a reset does not clear: after a fault they stay until a client has read them.
 //!
-//! Telemetry writes it, in its own time; nothing on a tick's way does. What a reset cuts short has a wrong CRC, and the count of
-//! what was written is raised only after the bytes are there. A power cut leaves nothing.
+//! Only telemetry writes it. A frame that a reset cuts short has a wrong CRC; the count of bytes is raised after they are written. A power
+//! cut leaves nothing.
 
 use core::mem::MaybeUninit;
 use core::num::NonZeroU32;
@@ -17,7 +16,7 @@ const SIZE: usize = 48 * 1024;
 const _: () = assert!(SIZE <= u16::MAX as usize);
 /// The header is this image's, not what RAM held when it was switched on.
 const SEAL: u32 = 0x7E4A_B0C5;
-/// What can end a run, by its number less one in the header.
+/// Faults that end a run; the header holds the index plus one.
 const FAULTS: [Fault; 5] = [
     Fault::PanicReset,
     Fault::WatchdogReset,
@@ -57,7 +56,7 @@ pub fn start(after: Option<Fault>, was_off: bool) {
     }
 }
 
-/// Takes down why the run ends: the last that it does, with all interrupts off. What does not fit is cut off.
+/// Appends to the reason of the run's end; called last, with all interrupts off. Text beyond [`WHY_MAX`] is cut off.
 pub fn why(text: &[u8]) {
     // The first fault of a row has its own.
     if header(SEALED) != SEAL || header(FAULT) != 0 {
@@ -74,7 +73,7 @@ pub fn why(text: &[u8]) {
     set_header(WHY_LENGTH, length as u32);
 }
 
-/// The same with a number below 100 000. Core's formatting has ways to panic, and takes flash.
+/// Appends a number below 100 000. Core's formatting can panic.
 pub fn why_decimal(number: u32) {
     const POWERS: [NonZeroU32; 5] = [power(10_000), power(1_000), power(100), power(10), power(1)];
     let mut rest = number;
@@ -91,7 +90,6 @@ const fn power(of_ten: u32) -> NonZeroU32 {
     NonZeroU32::new(of_ten).expect("not zero")
 }
 
-/// The same with an address.
 pub fn why_hex(address: u32) {
     for nibble in (0..8).rev().map(|n| (address >> (4 * n)) as u8 & 0xF) {
         why(&[nibble + if nibble < 10 { b'0' } else { b'a' - 10 }]);

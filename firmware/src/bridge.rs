@@ -1,5 +1,6 @@
 //! The motor bridge: TIM1 channel 1 closes (PA8), channel 2 opens (PA9), 20 kHz.
 
+#[path = "bridge/edges.rs"]
 mod edges;
 
 use embassy_stm32::Peri;

@@ -26,7 +26,6 @@ impl Button {
         }
     }
 
-    /// Whether the bridge has switched itself off.
     pub fn bridge_is_off(&self) -> bool {
         self.bridge_fault.is_low()
     }
@@ -36,7 +35,6 @@ impl Button {
         self.pin.is_low()
     }
 
-    /// Switches the light.
     pub fn light(&mut self, on: bool) {
         self.light.set_level(Level::from(on));
     }

@@ -6,7 +6,6 @@ use tenax_logic::allowance::Allowance;
 
 use crate::{counts, line, mail};
 
-/// Listens for ever.
 #[embassy_executor::task]
 pub async fn commands(mut line: line::Down) -> ! {
     let mut receiver = Receiver::new();
@@ -19,19 +18,13 @@ pub async fn commands(mut line: line::Down) -> ! {
             continue;
         };
         for &byte in bytes.iter().take(count) {
-            take(&mut receiver, &mut allowance, byte);
+            match receiver.push_if::<Down>(byte, || allowance.admits(counts::last_frame())) {
+                None => {}
+                // Never waits: while it did, bytes that came would be lost in the middle of a frame.
+                Some(Ok(command)) if allowance.affords(&command.message) && mail::hand_over(command) => {}
+                Some(Ok(_) | Err(BadFrame::Skipped)) => counts::COMMANDS_SKIPPED.add_one(),
+                Some(Err(_)) => counts::BAD_FRAMES.add_one(),
+            }
         }
-    }
-}
-
-/// Takes a byte of a line. Not inlined: there are two lines.
-#[inline(never)]
-pub fn take(receiver: &mut Receiver, allowance: &mut Allowance, byte: u8) {
-    match receiver.push_if::<Down>(byte, || allowance.admits(counts::last_frame())) {
-        None => {}
-        // Never waits: while it did, bytes that came would be lost in the middle of a frame.
-        Some(Ok(command)) if allowance.affords(&command.message) && mail::hand_over(command) => {}
-        Some(Ok(_) | Err(BadFrame::Skipped)) => counts::COMMANDS_SKIPPED.add_one(),
-        Some(Err(_)) => counts::BAD_FRAMES.add_one(),
     }
 }

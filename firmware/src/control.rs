@@ -20,7 +20,6 @@ use crate::switches::Switches;
 use crate::vibrator::Vibrator;
 use crate::watchdog::Watchdog;
 
-/// What a tick works with.
 pub struct Control {
     device: Device,
     bridge: Bridge,
@@ -36,7 +35,6 @@ pub struct Control {
 const LIVED_WELL: u16 = 10 * SLOW_HZ as u16;
 
 impl Control {
-    /// A hand at rest.
     pub fn new(
         (bridge, vibrator): (Bridge, Vibrator),
         switches: Switches,
@@ -46,7 +44,6 @@ impl Control {
         Self { device: Device::default(), bridge, vibrator, switches, button, watchdog, slow_frames: 0 }
     }
 
-    /// Lets the device take up what was kept, before the first tick.
     pub fn restore(&mut self, restore: impl FnOnce(&mut Device)) {
         restore(&mut self.device);
     }
@@ -154,7 +151,6 @@ fn tenax_control_command(device: &mut Device, command: &Received<Down>) -> Resul
     device.carry_out(command)
 }
 
-/// Runs control from frame to frame, for ever.
 #[embassy_executor::task]
 pub async fn control(scan: Scan, control: &'static mut Control) -> ! {
     control.watchdog.start();

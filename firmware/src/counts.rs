@@ -1,10 +1,9 @@
-//! What the image counts about itself. Every task adds to its own counts; telemetry reads them all.
+//! Counters of the image. Every task adds to its own; telemetry reads them all.
 
 use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 use tenax_hal_shim::wire::Counters;
 
-/// A number that only grows.
 pub struct Count(AtomicU32);
 
 impl Count {
@@ -12,17 +11,14 @@ impl Count {
         Self(AtomicU32::new(0))
     }
 
-    /// Counts one more.
     pub fn add_one(&self) {
         self.add(1);
     }
 
-    /// Counts `n` more.
     pub fn add(&self, n: u32) {
         self.0.fetch_add(n, Relaxed);
     }
 
-    /// Takes in one of which the largest counts.
     pub fn max(&self, n: u32) {
         self.0.fetch_max(n, Relaxed);
     }
@@ -32,13 +28,10 @@ impl Count {
     }
 }
 
-/// Frames taken whole.
 pub static FRAMES: Count = Count::new();
-/// Frames lost.
 pub static FRAMES_LOST: Count = Count::new();
 /// Times the converter or its DMA overran or fell silent, and was restarted.
 pub static OVERRUNS: Count = Count::new();
-/// Control ticks run.
 pub static TICKS: Count = Count::new();
 /// Control ticks that ended after the next frame had begun.
 pub static TICKS_LATE: Count = Count::new();
@@ -50,9 +43,9 @@ pub static BAD_FRAMES: Count = Count::new();
 /// Frames received that there was no time for.
 pub static COMMANDS_SKIPPED: Count = Count::new();
 
-/// Time that frames took control, us.
+/// Execution time of control since boot, us; wraps at 2^32.
 pub static CONTROL_US: Count = Count::new();
-/// The longest that one did.
+/// Longest execution for one frame since boot, us.
 pub static CONTROL_US_MAX: Count = Count::new();
 
 /// Sequence number of the last frame that had its tick.
@@ -60,7 +53,6 @@ pub fn last_frame() -> u32 {
     TICKS.get().wrapping_sub(1)
 }
 
-/// Time that frames have taken control so far, us. It wraps.
 pub fn control_us() -> u32 {
     CONTROL_US.get()
 }

@@ -13,9 +13,15 @@ use embassy_stm32::peripherals::TIM2;
 use embassy_stm32::{Peri, interrupt::Priority};
 use embassy_sync::waitqueue::AtomicWaker;
 
-use crate::{mail, micros};
+use crate::clock::CORE_HZ;
+use crate::mail;
 
-/// Who waits: control alone, for one thing at a time.
+/// The clock, us. It wraps after 71 minutes.
+pub fn clock_us() -> u32 {
+    pac::TIM2.cnt().read()
+}
+
+/// Waker of control, which waits for one thing at a time.
 pub static WAITING: AtomicWaker = AtomicWaker::new();
 
 /// An instant, us; they wrap after 71 minutes, so two of them are compared only if they are less than half of that apart.
@@ -23,36 +29,35 @@ pub static WAITING: AtomicWaker = AtomicWaker::new();
 pub struct Micros(u32);
 
 impl Micros {
-    /// So much later.
     pub const fn after(self, us: u32) -> Self {
         Self(self.0.wrapping_add(us))
     }
 
-    /// So much earlier.
     pub const fn before(self, us: u32) -> Self {
         Self(self.0.wrapping_sub(us))
     }
 
-    /// Time since an earlier instant, us.
     pub const fn since(self, earlier: Self) -> u32 {
         self.0.wrapping_sub(earlier.0)
     }
 
-    /// Whether this instant is later than the other.
     pub const fn is_after(self, other: Self) -> bool {
         self.0.wrapping_sub(other.0) as i32 > 0
     }
 }
 
-/// The clock and its compare register.
 pub struct Deadline {
     _timer: Peri<'static, TIM2>,
 }
 
 impl Deadline {
-    /// Starts the clock.
     pub fn new(timer: Peri<'static, TIM2>) -> Self {
-        micros::start();
+        pac::RCC.apb1enr().modify(|w| w.set_tim2en(true));
+        pac::TIM2.arr().write_value(u32::MAX);
+        pac::TIM2.psc().write_value((CORE_HZ / 1_000_000 - 1) as u16);
+        // The update takes the prescaler up.
+        pac::TIM2.egr().write(|w| w.set_ug(true));
+        pac::TIM2.cr1().write(|w| w.set_cen(true));
         pac::TIM2.ccr(BEAT).write_value(BEAT_US);
         pac::TIM2.sr().write(|w| w.0 = 0);
         pac::TIM2.dier().write(|w| {
@@ -65,9 +70,8 @@ impl Deadline {
         Self { _timer: timer }
     }
 
-    /// Now.
     pub fn now(&self) -> Micros {
-        Micros(micros::clock_us())
+        Micros(clock_us())
     }
 
     /// Waits until `ready` gives something, or until after `at`: then None. Ready is asked once more at the end, so what

@@ -15,7 +15,7 @@ use embassy_stm32::pac::flash::vals::Psize;
 use embassy_stm32::peripherals::FLASH;
 use tenax_hal_shim::flash::{BLANK, FlashArea, FlashFailed, Sector};
 
-use crate::micros::clock_us;
+use crate::deadline::clock_us;
 
 unsafe extern "C" {
     static __store_start: u32;
@@ -31,13 +31,11 @@ const KEYS: [u32; 2] = [0x4567_0123, 0xCDEF_89AB];
 const PATIENCE_WORD_US: u32 = 1_000;
 const PATIENCE_SECTOR_US: u32 = 4_000_000;
 
-/// The two sectors, and the interface that programs them.
 pub struct Flash {
     _interface: Peri<'static, FLASH>,
 }
 
 impl Flash {
-    /// Takes the interface.
     pub fn new(interface: Peri<'static, FLASH>) -> Self {
         Self { _interface: interface }
     }
@@ -61,7 +59,6 @@ impl Flash {
     }
 }
 
-/// Whether the interface got ready in time.
 fn wait(patience_us: u32) -> bool {
     let begun = clock_us();
     while INTERFACE.sr().read().bsy() {

@@ -18,9 +18,7 @@ use tenax_logic::restart::Mark;
 use crate::deadline::WAITING;
 use crate::last_words::give_up;
 
-/// Words of one half.
 const HALF: usize = PAIRS * SCANS_PER_FRAME;
-/// Words of the ring, two codes in each.
 pub const RING_LEN: usize = 2 * HALF;
 /// The converter's stream (RM0383, table 28), whose request is the stream's channel 0.
 const STREAM: usize = 0;
@@ -28,15 +26,12 @@ const STREAM: usize = 0;
 /// Halves that DMA has filled since it was started. Only the interrupt counts up.
 static FILLED: AtomicU32 = AtomicU32::new(0);
 
-/// Why a half cannot be read: DMA is in it, for it came round again, or was stopped there. A stream that is switched off
-/// reports an end that it did not reach.
+/// DMA is in the half that was to be read: it came round again, or was stopped there.
 pub struct NotWhole;
 
-/// The ring, while DMA writes to it.
 pub struct Halves<'r> {
     _stream: Peri<'r, DMA2_CH0>,
     ring: &'r mut [u32; RING_LEN],
-    /// Halves that were read.
     read: u32,
 }
 
@@ -67,7 +62,6 @@ impl<'r> Halves<'r> {
         Self { _stream: stream, ring, read: 0 }
     }
 
-    /// Whether there is a half to read.
     pub fn is_filled(&self) -> bool {
         FILLED.load(Ordering::Acquire) != self.read
     }
@@ -106,7 +100,6 @@ fn stop() {
     fence(Ordering::SeqCst);
 }
 
-/// Clears those flags of the stream that were seen.
 fn clear(seen: pac::dma::regs::Ixr) {
     pac::DMA2.ifcr(0).write(|w| {
         w.set_feif(STREAM, seen.feif(STREAM));

@@ -4,7 +4,6 @@ use core::ptr::addr_of;
 
 use tenax_hal_shim::wire::{Identity, ResetCause};
 
-/// A note of the linker's.
 #[repr(C)]
 struct Note {
     /// The lengths of its owner's name and of itself, its kind, the name `GNU`.
@@ -13,11 +12,9 @@ struct Note {
 }
 
 unsafe extern "C" {
-    /// About the image (`memory.x`).
     static __build_id: Note;
 }
 
-/// Of a start for this reason.
 pub fn of(reset: ResetCause) -> Identity {
     // SAFETY: the note is in flash, is longer than this, and nobody writes it.
     let Note { header: _, build } = unsafe { addr_of!(__build_id).read() };

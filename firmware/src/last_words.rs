@@ -1,10 +1,9 @@
-//! What happens when the image can go on no longer, and how the next start knows.
+//! The end of a run by a fault, and its mark for the next start.
 //!
 //! First the bridge goes off; everything else comes after. Then a mark is left in RAM, which a reset does not clear, and
 //! the chip is reset.
 
 use core::mem::MaybeUninit;
-use core::panic::PanicInfo;
 use core::ptr::{addr_of, addr_of_mut};
 
 use cortex_m::peripheral::SCB;
@@ -14,18 +13,19 @@ use tenax_logic::restart::{self, Flags, Mark, Start};
 
 use crate::{black_box, bridge, vibrator};
 
-/// Why the image ended, as words in RAM. Any other value is what RAM held at power-on.
+/// Marks of the end of a run, as words in RAM; any other word is RAM after power-on.
 const MARKS: [(Mark, u32); 3] =
     [(Mark::Panicked, 0x7E4A_C0DE), (Mark::SupplySagged, 0x7E4A_BA77), (Mark::CrystalLost, 0x7E4A_C10C)];
 
-/// What a reset does not clear: not initialised by the runtime.
+/// Not initialised by the runtime: a reset leaves it as it is.
 #[unsafe(link_section = ".uninit.mark")]
 static mut KEPT: MaybeUninit<[u32; 2]> = MaybeUninit::uninit();
-/// Where the mark is in it, and the restarts in a row.
+/// Index of the mark.
 const MARK: usize = 0;
+/// Index of the number of restarts in a row.
 const RESTARTS: usize = 1;
 
-/// How this run began. Asked once, before anything else is set up: it forgets the answer.
+/// The cause of this start. Called once, first: it clears flags and mark.
 pub fn start() -> Start {
     let csr = pac::RCC.csr().read();
     pac::RCC.csr().modify(|w| w.set_rmvf(true));
@@ -44,7 +44,7 @@ pub fn start() -> Start {
     start
 }
 
-/// The image has run for a while: what comes now is another story.
+/// Ends the row of restarts.
 pub fn lived_well() {
     keep(RESTARTS, 0);
 }
@@ -59,7 +59,7 @@ fn keep(place: usize, word: u32) {
     unsafe { addr_of_mut!(KEPT).cast::<u32>().add(place).write_volatile(word) }
 }
 
-/// The image can go on no longer, and this is why: the bridge off, the mark left, a reset.
+/// Switches the bridge off, leaves the mark and the reason, and resets the chip.
 pub fn give_up(mark: Mark, why: &str) -> ! {
     cortex_m::interrupt::disable();
     bridge::off();
@@ -69,22 +69,6 @@ pub fn give_up(mark: Mark, why: &str) -> ! {
     }
     black_box::why(why.as_bytes());
     SCB::sys_reset()
-}
-
-#[panic_handler]
-fn on_panic(info: &PanicInfo) -> ! {
-    cortex_m::interrupt::disable();
-    bridge::off();
-    defmt::error!("{}", defmt::Display2Format(info));
-    if let Some(place) = info.location() {
-        // The end of a path says most.
-        let path = place.file().as_bytes();
-        let from = path.iter().rposition(|&byte| byte == b'/').map_or(0, |at| at + 1);
-        black_box::why(path.get(from..).unwrap_or(path));
-        black_box::why(b":");
-        black_box::why_decimal(place.line());
-    }
-    give_up(Mark::Panicked, "")
 }
 
 /// A fault of the core: as a panic.

@@ -26,7 +26,7 @@ use crate::last_words::give_up;
 const RX: usize = 5;
 const TX: usize = 6;
 const CHANNEL: u8 = 4;
-/// Where a stream's flags stand in its register: each has those of four.
+/// Position of a stream's flags in its register, which has those of four streams.
 const RX_FLAGS: usize = RX - 4;
 const TX_FLAGS: usize = TX - 4;
 /// The function of both pins that is the port's (DS10314, table 9).
@@ -42,12 +42,10 @@ static SENT: AtomicBool = AtomicBool::new(true);
 static SENDER: AtomicWaker = AtomicWaker::new();
 static READER: AtomicWaker = AtomicWaker::new();
 
-/// The way up.
 pub struct Up {
     _taken: (),
 }
 
-/// The way down.
 pub struct Down {
     /// Bytes that were read. It wraps.
     read: u32,
@@ -56,7 +54,6 @@ pub struct Down {
 /// More came than was read in time: some of it is lost.
 pub struct Overrun;
 
-/// Opens the line both ways.
 pub fn open(
     _port: Peri<'static, peripherals::USART2>,
     _streams: (Peri<'static, DMA1_CH5>, Peri<'static, DMA1_CH6>),
@@ -206,7 +203,6 @@ unsafe fn USART2() {
     }
 }
 
-/// Half of the ring is filled.
 #[interrupt]
 unsafe fn DMA1_STREAM5() {
     let seen = clear(RX_FLAGS);
@@ -216,7 +212,6 @@ unsafe fn DMA1_STREAM5() {
     READER.wake();
 }
 
-/// A frame is handed on.
 #[interrupt]
 unsafe fn DMA1_STREAM6() {
     if clear(TX_FLAGS).tcif(TX_FLAGS) {

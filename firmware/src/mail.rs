@@ -6,11 +6,12 @@ use core::cell::Cell;
 use core::future::poll_fn;
 use core::mem::{MaybeUninit, forget};
 use core::ptr::copy_nonoverlapping;
-use core::sync::atomic::{AtomicBool, AtomicU16, AtomicU32, Ordering::Relaxed};
+use core::sync::atomic::{AtomicBool, AtomicU16, Ordering::Relaxed};
 use core::task::Poll;
 
 use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
+use embassy_sync::signal::Signal;
 use embassy_sync::waitqueue::AtomicWaker;
 use heapless::Deque;
 use tenax_hal_shim::wire::{Down, Received, Up};
@@ -18,7 +19,7 @@ use tenax_logic::allowance::BURST;
 use tenax_logic::store::record::Record;
 
 use crate::counts;
-use crate::micros::clock_us;
+use crate::deadline::clock_us;
 
 /// A bounded queue that nobody waits to put something into.
 struct Mailbox<T, const N: usize>(Mutex<CriticalSectionRawMutex, Deque<T, N>>);
@@ -28,7 +29,6 @@ impl<T, const N: usize> Mailbox<T, N> {
         Self(Mutex::new(Deque::new()))
     }
 
-    /// False if it is full.
     fn put(&self, item: T) -> bool {
         // SAFETY: the closure does not come back here.
         unsafe { self.0.lock_mut(|queue| queue.push_back(item).is_ok()) }
@@ -39,8 +39,8 @@ impl<T, const N: usize> Mailbox<T, N> {
         unsafe { self.0.lock_mut(Deque::pop_front) }
     }
 
-    /// Takes the oldest out to a place of its own; false if there is none. For what is long: returned, it would be copied in
-    /// odd parts, at four times the instructions, with the interrupts off, and control would begin its frame 7 us later.
+    /// Moves the oldest item to `place`; false if there is none. A long item that is returned is copied in odd parts, with interrupts off:
+    /// control would begin its frame 7 us later.
     fn take_to(&self, place: &mut MaybeUninit<T>) -> bool {
         // SAFETY: the closure does not come back here. Of the two copies one is forgotten.
         unsafe {
@@ -57,29 +57,22 @@ impl<T, const N: usize> Mailbox<T, N> {
 /// Messages on their way up. With everything on, eight come in a slow frame and take 11.7 of its 12.5 ms on the line; twenty events
 /// may come with them at once, and an answer that takes 4 ms. What does not fit is dropped.
 static UP: Mailbox<Received<Up>, 32> = Mailbox::new();
-/// Telemetry says its counters next.
 static COUNTERS_DUE: AtomicBool = AtomicBool::new(false);
-/// Telemetry, while it waits for one.
 static UP_WAITING: AtomicWaker = AtomicWaker::new();
-/// Number of the next message.
 static NUMBER: AtomicU16 = AtomicU16::new(0);
-/// Commands on their way to control.
 static DOWN: Mailbox<Received<Down>, { BURST as usize }> = Mailbox::new();
-/// A record on its way to flash.
 static RECORD: Mutex<CriticalSectionRawMutex, Cell<Option<Record>>> = Mutex::new(Cell::new(None));
 static RECORD_WAITS: AtomicBool = AtomicBool::new(false);
-/// The store, while it waits for one.
 static RECORD_WAITING: AtomicWaker = AtomicWaker::new();
 /// The store waits for the end of a tick.
-static TICK_WAITING: AtomicWaker = AtomicWaker::new();
 static TICK_WANTED: AtomicBool = AtomicBool::new(false);
-/// When that was, us.
-static TICK_AT: AtomicU32 = AtomicU32::new(0);
+/// When it ended, us.
+static TICK_ENDED: Signal<CriticalSectionRawMutex, u32> = Signal::new();
 
 /// Hands a message to telemetry, numbered. Never waits: if the line is behind, the message is dropped and counted, and the
 /// other end sees the gap in the numbers.
 ///
-/// For control, which nobody else that posts interrupts: the others have [`post_beside_control`].
+/// For control only, which no other sender interrupts.
 pub fn post(message: Up) {
     let sequence = NUMBER.fetch_add(1, Relaxed);
     if !UP.put(Received { sequence, message }) {
@@ -88,8 +81,8 @@ pub fn post(message: Up) {
     UP_WAITING.wake();
 }
 
-/// The same for whoever control interrupts. What control posted between the number and the place would overtake this message, and the
-/// other end would count messages that it never missed; so both are one step, which costs control nothing.
+/// [`post`] for tasks that control interrupts: number and place are taken in one critical section. A message of control between the two
+/// would overtake this one, and the receiver would count a lost message.
 #[inline(never)]
 pub fn post_beside_control(message: Up) {
     let mut item = Received { sequence: 0, message };
@@ -106,13 +99,11 @@ pub fn post_beside_control(message: Up) {
     UP_WAITING.wake();
 }
 
-/// The counters are due.
 pub fn counters_due() {
     COUNTERS_DUE.store(true, Relaxed);
     UP_WAITING.wake();
 }
 
-/// Whether they are, since this was last asked.
 pub fn are_counters_due() -> bool {
     COUNTERS_DUE.swap(false, Relaxed)
 }
@@ -147,7 +138,6 @@ pub fn next_command() -> Option<Received<Down>> {
     DOWN.take()
 }
 
-/// Whether the store would take a record.
 pub fn store_is_free() -> bool {
     !RECORD_WAITS.load(Relaxed)
 }
@@ -159,7 +149,6 @@ pub fn save(record: Record) {
     RECORD_WAITING.wake();
 }
 
-/// The next record to save; waits for one.
 pub fn next_record() -> impl Future<Output = Record> {
     poll_fn(|context| {
         // Before it is asked: what comes in between wakes.
@@ -170,26 +159,16 @@ pub fn next_record() -> impl Future<Output = Record> {
     })
 }
 
-/// Says that a tick has ended, if anybody waits for it.
+/// Says that a tick has ended, if the store waits for it.
 pub fn end_tick() {
     if TICK_WANTED.load(Relaxed) {
-        TICK_AT.store(clock_us(), Relaxed);
         TICK_WANTED.store(false, Relaxed);
-        TICK_WAITING.wake();
+        TICK_ENDED.signal(clock_us());
     }
 }
 
-/// How long ago the tick ended that was last waited for, us.
-pub fn since_tick_us() -> u32 {
-    clock_us().wrapping_sub(TICK_AT.load(Relaxed))
-}
-
-/// Waits for the end of the tick to come. Not an `async fn`, as above.
-pub fn tick_over() -> impl Future<Output = ()> {
+/// Waits for the end of the tick to come, us.
+pub fn tick_over() -> impl Future<Output = u32> {
     TICK_WANTED.store(true, Relaxed);
-    poll_fn(|context| {
-        TICK_WAITING.register(context.waker());
-        let over = !TICK_WANTED.load(Relaxed);
-        if over { Poll::Ready(()) } else { Poll::Pending }
-    })
+    TICK_ENDED.wait()
 }

@@ -31,7 +31,6 @@ mod identity;
 mod last_words;
 mod line;
 mod mail;
-mod micros;
 mod scan;
 mod stack;
 mod store;
@@ -40,6 +39,8 @@ mod switches;
 mod telemetry;
 mod vibrator;
 mod watchdog;
+
+use core::panic::PanicInfo;
 
 use cortex_m::peripheral::SCB;
 use defmt_rtt as _;
@@ -53,7 +54,7 @@ use tenax_hal_shim::wire::{ResetCause, Up};
 use tenax_hal_shim::words::Fault;
 use tenax_logic::device::Device;
 use tenax_logic::rescue::{self, Rescue};
-use tenax_logic::restart::Start;
+use tenax_logic::restart::{Mark, Start};
 use tenax_logic::store::Erase;
 
 use crate::bridge::Bridge;
@@ -75,14 +76,12 @@ unsafe fn I2C3_ER() {
     unsafe { URGENT.on_interrupt() }
 }
 
-/// The box that a DMA ring stands in for as long as the image runs.
 static SCAN_RING: ConstStaticCell<[u32; halves::RING_LEN]> = ConstStaticCell::new([0; halves::RING_LEN]);
 
-/// What control works with: built once and never moved, for every move of it by value is a copy on the stack.
+/// Control's state, built in place and never moved: a move by value is a copy of 9 kB on the stack.
 static CONTROL: StaticCell<control::Control> = StaticCell::new();
 
-/// A function of its own makes it in place. Inlined into the task it stood on the stack first, for as long as the task runs: 9 kB, and 6 kB
-/// of flash.
+/// Not inlined: the task would keep a copy on its stack.
 #[inline(never)]
 fn made(new: impl FnOnce() -> control::Control) -> &'static mut control::Control {
     CONTROL.init_with(new)
@@ -137,7 +136,7 @@ async fn main(spawner: Spawner) {
     mail::post(Up::Hello { frame_hz: FRAME_HZ as u16, after });
     spawner.spawn(once(telemetry::telemetry(up)));
     if !supplied {
-        // It is told why, and starts anew when there is enough to drive a motor with.
+        // Starts anew when the supply can drive a motor.
         while supply::is_low() {
             deadline.until(deadline.now().after(10_000), || None::<()>).await;
         }
@@ -185,7 +184,7 @@ async fn main(spawner: Spawner) {
     urgent.spawn(once(control::control(scan, control)));
 }
 
-/// What is left after too many restarts. A watchdog that is not fed ends this, too, with the bridge off.
+/// The mode after too many restarts: the button opens the hand, nothing else moves it.
 async fn wait_for_button(
     deadline: &Deadline,
     mut bridge: Bridge,
@@ -206,4 +205,20 @@ async fn wait_for_button(
 /// A task that is started here and nowhere else.
 fn once<S>(task: Result<SpawnToken<S>, SpawnError>) -> SpawnToken<S> {
     task.expect("each task is started once")
+}
+
+#[panic_handler]
+fn on_panic(info: &PanicInfo) -> ! {
+    cortex_m::interrupt::disable();
+    bridge::off();
+    defmt::error!("{}", defmt::Display2Format(info));
+    if let Some(place) = info.location() {
+        // The end of a path says most.
+        let path = place.file().as_bytes();
+        let from = path.iter().rposition(|&byte| byte == b'/').map_or(0, |at| at + 1);
+        black_box::why(path.get(from..).unwrap_or(path));
+        black_box::why(b":");
+        black_box::why_decimal(place.line());
+    }
+    last_words::give_up(Mark::Panicked, "")
 }

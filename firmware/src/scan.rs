@@ -33,7 +33,6 @@ const SAMPLE_TIME: SampleTime = SampleTime::CYCLES56;
 /// A frame that is this late is not waited for any more, us: the switches have begun to show the following one.
 const PATIENCE_US: u32 = SCAN_US;
 
-/// The converter, its timer and its DMA.
 pub struct Scan {
     _adc: Peri<'static, ADC1>,
     stream: Peri<'static, DMA2_CH0>,
@@ -43,10 +42,8 @@ pub struct Scan {
     due: Due,
 }
 
-/// The frame to come.
 struct Due {
     sequence: u32,
-    /// When its first scan is triggered.
     begins: Micros,
 }
 
@@ -169,7 +166,7 @@ fn listen(converter: pac::adc::Adc) {
     });
 }
 
-/// What makes the scan's pins analogue, of ports A, B and C: two bits a pin. The converter's inputs 0 to 7 are PA0 to PA7, then come PB0
+/// MODER bits that make the scan's pins analogue, of ports A, B and C: two bits a pin. The converter's inputs 0 to 7 are PA0 to PA7, then come PB0
 /// and PB1, and from 10 on PC0 to PC5 (DS10314, table 8).
 const ANALOG: [u32; 3] = {
     let mut analog = [0; 3];
@@ -196,7 +193,7 @@ const SEQUENCE: [u32; 3] = {
     }
     sequence
 };
-/// Where SQR1 has the number of ranks, less one.
+/// Position in SQR1 of the number of ranks, less one.
 const LENGTH_SHIFT: u32 = 20;
 /// [`SAMPLE_TIME`] for each of the ten channels of SMPR2, three bits each. SMPR1 has nine.
 const SAMPLE_TIMES: u32 = {

@@ -10,6 +10,7 @@ use tenax_logic::device::Device;
 use tenax_logic::store::record::{PAYLOAD_BYTES, Record};
 use tenax_logic::store::{Found, Log, Refused};
 
+use crate::deadline::clock_us;
 use crate::flash::Flash;
 use crate::{counts, mail};
 
@@ -19,7 +20,6 @@ const TICKS_PER_WORD: u32 = 4;
 const LATEST_US: u32 = 250;
 const _: () = assert!(PAYLOAD_BYTES <= KEPT_MAX);
 
-/// Hands over to the device what was kept.
 pub fn restore(device: &mut Device, flash: &Flash, found: &Found) {
     let mut buffer = [0; PAYLOAD_BYTES];
     for kept in Kept::ALL {
@@ -32,7 +32,7 @@ pub fn restore(device: &mut Device, flash: &Flash, found: &Found) {
     }
 }
 
-/// What was taken up, for whoever replays this run.
+/// Sends the restored records up, for a replay of this run.
 #[inline(never)]
 pub fn restored(flash: &Flash, found: &Found, tell: impl Fn(Up)) {
     let mut buffer = [0; PAYLOAD_BYTES];
@@ -45,7 +45,6 @@ pub fn restored(flash: &Flash, found: &Found, tell: impl Fn(Up)) {
     }
 }
 
-/// Saves what it is handed, for ever.
 #[embassy_executor::task]
 pub async fn store(mut flash: Flash, mut log: Log) -> ! {
     loop {
@@ -66,13 +65,14 @@ async fn save(flash: &mut Flash, log: &mut Log, record: &Record) -> Result<(), R
     let mut buffer = [0; PAYLOAD_BYTES];
     let mut saving = log.begin(record.kept(), record.payload(&mut buffer))?;
     loop {
-        for _ in 0..TICKS_PER_WORD {
+        for _ in 1..TICKS_PER_WORD {
             mail::tick_over().await;
         }
+        let mut ended_us = mail::tick_over().await;
         // Telemetry may have been in the middle of its longest message: 18 000 instructions, 0.18 to 0.36 ms. Argued, not seen: no word
         // of a run with everything on the line has waited for it, at 50 million instructions a second neither.
-        while mail::since_tick_us() > LATEST_US {
-            mail::tick_over().await;
+        while clock_us().wrapping_sub(ended_us) > LATEST_US {
+            ended_us = mail::tick_over().await;
         }
         match saving.step(flash) {
             Ok(true) => return Ok(()),

@@ -11,12 +11,12 @@ use embassy_stm32::interrupt::{InterruptExt, Priority};
 use embassy_stm32::pac::{EXTI, FLASH, PWR};
 use tenax_logic::restart::Mark;
 
+use crate::deadline::clock_us;
 use crate::last_words;
-use crate::micros::clock_us;
 
 /// PLS: 2.93 V falling, 3.03 V rising.
 const LEVEL_6: u8 = 6;
-/// How long a supply may take to rise. A battery behind a regulator is there within some ms.
+/// Longest rise of the supply, us. A battery behind a regulator takes some ms.
 const RISE_US: u32 = 1_000_000;
 /// The line of the voltage detector's output among the external interrupts (RM0383, section 10.2.5).
 const LINE: usize = 16;
@@ -49,12 +49,10 @@ pub fn watch() -> bool {
     true
 }
 
-/// Whether the supply is below the level.
 pub fn is_low() -> bool {
     PWR.csr1().read().pvdo()
 }
 
-/// The supply sags.
 #[interrupt]
 unsafe fn PVD() {
     last_words::give_up(Mark::SupplySagged, "")

@@ -8,7 +8,6 @@ use embassy_stm32::peripherals::{PB12, PB13, PB14, PB15};
 /// The first select line's pin: S0 to S3 are PB12 to PB15.
 const FIRST_PIN: usize = 12;
 
-/// S0 to S3. Both switches share them.
 pub struct Switches {
     _lines: [Output<'static>; 4],
 }

@@ -5,10 +5,9 @@ use core::mem::MaybeUninit;
 use static_cell::ConstStaticCell;
 use tenax_hal_shim::wire::{FRAME_MAX, Received, Up, encode};
 
-use crate::micros::clock_us;
+use crate::deadline::clock_us;
 use crate::{black_box, counts, line, mail};
 
-/// The message that is being sent.
 static NEXT: ConstStaticCell<MaybeUninit<Received<Up>>> = ConstStaticCell::new(MaybeUninit::uninit());
 
 /// Sends what is posted, in its order, and posts the counters ten times a second.

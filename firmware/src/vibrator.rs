@@ -36,7 +36,6 @@ impl Vibrator {
         Self { _taken: () }
     }
 
-    /// Drives it so until the next call.
     pub fn drive(&mut self, duty: Duty) {
         TIM4.ccr(0).write(|w| w.set_ccr(duty.as_per_mille()));
     }

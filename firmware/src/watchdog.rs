@@ -10,13 +10,11 @@ const PERIOD_MS: u16 = 100;
 /// Its clock, 32 kHz (17 to 47, DS10314), divided by 4.
 const TICKS_PER_MS: u16 = 8;
 
-/// Not running before it is started.
 pub struct Watchdog {
     _taken: Peri<'static, peripherals::IWDG>,
 }
 
 impl Watchdog {
-    /// Sets the period.
     pub fn new(taken: Peri<'static, peripherals::IWDG>) -> Self {
         IWDG.kr().write(|w| w.set_key(Key::ENABLE));
         IWDG.pr().write(|w| w.set_pr(Pr::DIVIDE_BY4));
@@ -24,12 +22,10 @@ impl Watchdog {
         Self { _taken: taken }
     }
 
-    /// Starts it, until the next reset.
     pub fn start(&mut self) {
         IWDG.kr().write(|w| w.set_key(Key::START));
     }
 
-    /// Feeds it.
     pub fn feed(&mut self) {
         IWDG.kr().write(|w| w.set_key(Key::RESET));
     }

@@ -24,8 +24,6 @@ pub enum Behaviour {
 }
 
 impl Behaviour {
-    /// Its name, for people.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Stroke => "stroke",
@@ -37,22 +35,16 @@ impl Behaviour {
     }
 }
 
-/// How a behaviour ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum Ending {
-    /// The request was carried out.
     Done,
-    /// By command.
     Stopped,
     /// A muscle became active, or a drive command came.
     TakenOver,
     /// A needed sensor gives no valid reading, or no pictures come.
     SensorLost,
-    /// The longest duration has passed.
     TooLong,
-    /// The force ceiling is reached.
     Ceiling,
-    /// Nothing is held any more.
     Dropped,
     /// The grasp was loosened as far as allowed and nothing slipped; it is as firm as before.
     NoSlip,
@@ -61,8 +53,6 @@ pub enum Ending {
 }
 
 impl Ending {
-    /// The ending in words.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Done => "done",

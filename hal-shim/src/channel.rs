@@ -16,13 +16,10 @@ pub const FRAME_HZ: u32 = SCAN_HZ / SCANS_PER_FRAME as u32;
 pub const FRAMES_PER_SLOW_FRAME: u8 = 25;
 /// Rate of slow frames, Hz: the rate of each switched signal.
 pub const SLOW_HZ: u32 = FRAME_HZ / FRAMES_PER_SLOW_FRAME as u32;
-/// Frames in this many milliseconds.
-#[must_use]
 pub const fn frames(ms: u32) -> u32 {
     ms * FRAME_HZ / 1_000
 }
 
-/// Inputs of one analogue switch (CD74HC4067).
 pub const SWITCH_INPUTS: u8 = 16;
 
 /// The input of switch B that is at the supply.
@@ -38,44 +35,35 @@ pub const SAMPLE_MAX: u16 = CODE_MAX * SCANS_PER_FRAME as u16;
 pub const REFERENCE_MV: u32 = 3_300;
 
 /// The sample (0 to [`SAMPLE_MAX`]) that a steady voltage at the pin gives, rounded to nearest.
-#[must_use]
 pub const fn sample_from_mv(mv: u32) -> u16 {
     let mv = if mv > REFERENCE_MV { REFERENCE_MV } else { mv };
     ((mv * SAMPLE_MAX as u32 + REFERENCE_MV / 2) / REFERENCE_MV) as u16
 }
 
 /// The voltage at the pin that a sample stands for, mV, rounded to nearest.
-#[must_use]
 pub const fn mv_from_sample(sample: u16) -> u32 {
     (sample as u32 * REFERENCE_MV + SAMPLE_MAX as u32 / 2) / SAMPLE_MAX as u32
 }
 
-/// How a signal reaches the converter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Input {
-    /// On a dedicated pin, converted in every scan.
     Direct {
-        /// Position in the scan, 0 to 11.
         rank: u8,
     },
     /// Behind switch A: read while the select lines show `select`.
     SwitchA {
-        /// S0 to S3 as a number.
         select: u8,
     },
     /// Behind switch B: read while the select lines show `select`.
     SwitchB {
-        /// S0 to S3 as a number.
         select: u8,
     },
 }
 
-/// One signal of the fingertip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Channel {
     /// Its name in recordings, scene files, reports and faults.
     pub name: &'static str,
-    /// Its input.
     pub input: Input,
     /// Voltage at the pin when nothing happens, mV. Never 0: a cut wire must not look like a sensor at rest.
     pub rest_mv: u32,
@@ -85,20 +73,13 @@ pub struct Channel {
     pub high_mv: u32,
 }
 
-/// The kind of a channel's sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// A PVDF film.
     Vibration,
-    /// A photoelastic head.
     Photoelastic,
-    /// A strain gauge.
     Strain,
-    /// A quadrant of the force sensing resistor.
     Force,
-    /// An element of the normal-force array.
     Taxel,
-    /// A myoelectric envelope.
     Muscle,
     /// A sensor of the hand: opening or motor current.
     Hand,
@@ -119,7 +100,6 @@ impl Role {
     }
 
     /// The verb for a person who moves such a sensor, as `tenax selftest` asks for it.
-    #[must_use]
     pub const fn verb(self) -> &'static str {
         match self {
             Self::Vibration => "tap",
@@ -131,34 +111,21 @@ impl Role {
     }
 }
 
-/// Number of PVDF films.
 pub const PVDF_COUNT: usize = 12;
-/// Number of strain gauges.
 pub const STRAIN_COUNT: usize = 12;
-/// Number of quadrants of the force sensing resistor.
 pub const FSR_COUNT: usize = 4;
-/// Number of elements of the normal-force array.
 pub const ARRAY_COUNT: usize = 10;
 
-/// Index of PVDF film 1.
 pub const PVDF: usize = 0;
 /// Index of the film whose place a photoelastic head can take.
 pub const HEAD: usize = PVDF + PVDF_COUNT - 1;
-/// Index of strain gauge 1.
 pub const STRAIN: usize = PVDF + PVDF_COUNT;
-/// Index of FSR quadrant A; B, C and D follow.
 pub const FSR: usize = STRAIN + STRAIN_COUNT;
-/// Index of normal-force element 1.
 pub const ARRAY: usize = FSR + FSR_COUNT;
-/// Index of the flexor's myoelectric envelope.
 pub const MYO_FLEXOR: usize = ARRAY + ARRAY_COUNT;
-/// Index of the extensor's myoelectric envelope.
 pub const MYO_EXTENSOR: usize = MYO_FLEXOR + 1;
-/// Index of the finger's opening.
 pub const OPENING: usize = MYO_EXTENSOR + 1;
-/// Index of the motor's current.
 pub const MOTOR_CURRENT: usize = OPENING + 1;
-/// Number of signals.
 pub const COUNT: usize = MOTOR_CURRENT + 1;
 
 /// First select of the FSR quadrants on switch A.
@@ -245,29 +212,22 @@ const fn slow(name: &'static str, select: u8, rest_mv: u32) -> Channel {
     Channel { name, input: Input::SwitchB { select }, rest_mv, low_mv: 100, high_mv: 3_250 }
 }
 
-/// Index of the channel called `name`.
-#[must_use]
 pub fn by_name(name: &str) -> Option<usize> {
     CHANNELS.iter().position(|channel| channel.name == name)
 }
 
-/// One rank of the scan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Rank {
-    /// The pin's name.
     pub pin: &'static str,
-    /// The converter's channel number of that pin.
     pub adc: u8,
 }
 
-/// Number of inputs in one scan.
 pub const SCAN_LEN: usize = 14;
 /// The rank of switch A's output. The switches come last, so they have had a whole scan to settle.
 pub const RANK_SWITCH_A: usize = 12;
-/// The rank of switch B's output.
 pub const RANK_SWITCH_B: usize = 13;
 
-/// What one scan converts, in order: the twelve PVDF pins, then the outputs of switches A and B.
+/// Inputs of one scan in order: the twelve PVDF pins, then the outputs of switches A and B.
 pub const SCAN: [Rank; SCAN_LEN] = [
     Rank { pin: "PA0", adc: 0 },
     Rank { pin: "PA1", adc: 1 },
@@ -290,37 +250,25 @@ mod tests {
     use super::*;
 
     #[test]
-    fn indices_and_names_agree() {
-        for (index, name) in [
-            (PVDF, "pvdf_1"),
-            (STRAIN, "strain_1"),
-            (FSR, "fsr_a"),
-            (ARRAY, "array_1"),
-            (MYO_FLEXOR, "myo_flexor"),
-            (MYO_EXTENSOR, "myo_extensor"),
-            (OPENING, "opening"),
-            (MOTOR_CURRENT, "motor_current"),
+    fn indices_names_and_roles_agree() {
+        for (first, count, prefix, role) in [
+            (PVDF, PVDF_COUNT, "pvdf_", Role::Vibration),
+            (STRAIN, STRAIN_COUNT, "strain_", Role::Strain),
+            (FSR, FSR_COUNT, "fsr_", Role::Force),
+            (ARRAY, ARRAY_COUNT, "array_", Role::Taxel),
+            (MYO_FLEXOR, 1, "myo_flexor", Role::Muscle),
+            (MYO_EXTENSOR, 1, "myo_extensor", Role::Muscle),
+            (OPENING, 1, "opening", Role::Hand),
+            (MOTOR_CURRENT, 1, "motor_current", Role::Hand),
         ] {
-            assert_eq!(by_name(name), Some(index));
+            for (n, channel) in CHANNELS.iter().enumerate().skip(first).take(count) {
+                let name = channel.name;
+                assert!(name.starts_with(prefix) && by_name(name) == Some(n), "{name}");
+                let fitted = if name == "pvdf_12" { Role::Photoelastic } else { role };
+                assert_eq!((Role::of(n, false), Role::of(n, true)), (role, fitted), "{name}");
+            }
         }
         assert_eq!(by_name("pvdf_13"), None);
-    }
-
-    #[test]
-    fn roles_are_those_of_the_names_and_only_the_heads_can_change() {
-        for (n, channel) in CHANNELS.iter().enumerate() {
-            let named = match channel.name.split('_').next() {
-                Some("pvdf") => Role::Vibration,
-                Some("strain") => Role::Strain,
-                Some("fsr") => Role::Force,
-                Some("array") => Role::Taxel,
-                Some("myo") => Role::Muscle,
-                _ => Role::Hand,
-            };
-            assert_eq!(Role::of(n, false), named, "{}", channel.name);
-            let fitted = if channel.name == "pvdf_12" { Role::Photoelastic } else { named };
-            assert_eq!(Role::of(n, true), fitted, "{}", channel.name);
-        }
     }
 
     #[test]

@@ -25,14 +25,10 @@ pub enum DetectorId {
 }
 
 impl DetectorId {
-    /// Every detector, in the order of their numbers.
     pub const ALL: [Self; 6] =
         [Self::S1, Self::S2, Self::Hebbian, Self::Mlp, Self::Injected, Self::Photoelastic];
-    /// How many there are.
     pub const COUNT: usize = Self::ALL.len();
 
-    /// Its name in reports and on the command line.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::S1 => "s1",
@@ -44,8 +40,6 @@ impl DetectorId {
         }
     }
 
-    /// Its name with the signal that it uses, for people.
-    #[must_use]
     pub const fn title(self) -> &'static str {
         match self {
             Self::S1 => "S1 vibration",
@@ -58,60 +52,44 @@ impl DetectorId {
     }
 }
 
-/// A set of detectors.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct DetectorSet(u8);
 
 impl DetectorSet {
-    /// The empty set.
     pub const NONE: Self = Self(0);
-    /// The set of all detectors.
     pub const ALL: Self = Self(((1u16 << DetectorId::COUNT) - 1) as u8);
 
-    /// The set of one detector.
     pub const fn only(id: DetectorId) -> Self {
         Self(1 << id as u8)
     }
 
     /// This set with `id` added (`is_in`) or removed.
-    #[must_use]
     pub const fn with(self, id: DetectorId, is_in: bool) -> Self {
         let bit = 1 << id as u8;
         Self(if is_in { self.0 | bit } else { self.0 & !bit })
     }
 
-    /// Intersection: the detectors that are in both sets.
-    #[must_use]
     pub const fn and(self, other: Self) -> Self {
         Self(self.0 & other.0)
     }
 
-    /// Union: the detectors that are in at least one of the sets.
-    #[must_use]
     pub const fn or(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
 
-    /// Difference: the detectors of this set that are not in `other`.
-    #[must_use]
     pub const fn without(self, other: Self) -> Self {
         Self(self.0 & !other.0)
     }
 
-    /// Whether the set has no detector.
-    #[must_use]
     pub const fn is_empty(self) -> bool {
         self.0 == 0
     }
 
-    /// Whether the set has this detector.
-    #[must_use]
     pub const fn contains(self, id: DetectorId) -> bool {
         self.0 & 1 << id as u8 != 0
     }
 
     /// The detector with the lowest number, None if the set is empty.
-    #[must_use]
     pub const fn first(self) -> Option<DetectorId> {
         // Asked in every tick, and nearly always of none.
         if self.0 == 0 {
@@ -122,7 +100,6 @@ impl DetectorSet {
     }
 
     /// One bit for each detector, in the order of [`DetectorId`].
-    #[must_use]
     pub const fn bits(self) -> u8 {
         self.0
     }
@@ -133,25 +110,20 @@ impl DetectorSet {
     }
 }
 
-/// The direction in which the object slips.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum Direction {
-    /// The detector cannot tell.
     #[default]
     Unknown,
-    /// Down in the hand.
     Down,
-    /// Up in the hand.
     Up,
 }
 
-/// Whether a detector has the input that it needs.
+/// State of a detector's input.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum DetectorHealth {
     /// The detector does not work yet: its windows fill, or it has not seen the finger unloaded.
     #[default]
     Starting,
-    /// The detector works.
     Working,
     /// The detector's sensors give no valid readings.
     Blind,
@@ -160,17 +132,14 @@ pub enum DetectorHealth {
 /// A detector's last conclusion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Evidence {
-    /// The object slips.
     pub slip: bool,
     /// The object is about to slip.
     pub incipient: bool,
     /// Confidence, 0 to 1000 per mille; 500 at the threshold.
     pub confidence_permille: u16,
-    /// Direction of slip.
     pub direction: Direction,
     /// Sequence number of the frame in which the detector decided this.
     pub decided_at: u32,
-    /// Whether the detector has the input that it needs.
     pub health: DetectorHealth,
     /// The number that is compared with the threshold: the envelope (S1, 14-bit samples), Ft/Fn (S2, per mille), the
     /// PVDF part of o1 (Hebbian, per mille), the logit (MLP), the rate of slip (photoelastic, um/s).

@@ -6,18 +6,13 @@ pub const BLANK: u32 = u32::MAX;
 /// One of the two sectors. Each is erased as a whole.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sector {
-    /// The one at the lower address.
     A,
-    /// The one at the higher address.
     B,
 }
 
 impl Sector {
-    /// Both sectors.
     pub const BOTH: [Self; 2] = [Self::A, Self::B];
 
-    /// The other sector.
-    #[must_use]
     pub const fn other(self) -> Self {
         match self {
             Self::A => Self::B,
@@ -41,7 +36,6 @@ pub struct FlashFailed;
 ///
 /// Programming may stall the core for as long as one word takes, erasing for seconds: the caller chooses the instant.
 pub trait FlashArea {
-    /// Words in each sector.
     fn sector_words(&self) -> usize;
 
     /// The word at `word` of `sector`; [`BLANK`] outside.

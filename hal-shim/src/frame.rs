@@ -16,11 +16,8 @@ pub struct Frame {
     pub sequence: u32,
     /// Whether all four scans are of this frame. After an overrun the samples mean nothing until this is true again.
     pub valid: bool,
-    /// The PVDF films.
     pub pvdf: [u16; PVDF_COUNT],
-    /// The output of switch A at [`Frame::select`].
     pub switch_a: u16,
-    /// The output of switch B at [`Frame::select`].
     pub switch_b: u16,
 }
 
@@ -33,13 +30,11 @@ const _: () = assert!(
         && SCAN_LEN == PVDF_COUNT + 2
 );
 
-/// A word's two halves, the lower first.
 const fn halves(word: u32) -> [u16; 2] {
     [word as u16, (word >> 16) as u16]
 }
 
 impl Frame {
-    /// Adds up a frame's scans.
     pub fn from_scans(sequence: u32, scans: &[Scan; SCANS_PER_FRAME]) -> Self {
         Self::from_pairs(sequence, |scan, pair| {
             let [first, second] = [2 * pair, 2 * pair + 1].map(|rank| u32::from(scans[scan][rank]));
@@ -77,7 +72,6 @@ impl Frame {
         select_of_slot(self.slot())
     }
 
-    /// Whether it is the last one of its slow frame.
     pub const fn ends_slow_frame(&self) -> bool {
         self.slot() == FRAMES_PER_SLOW_FRAME - 1
     }
@@ -86,7 +80,6 @@ impl Frame {
 /// The codes of one scan if the channels' pins have the codes in `pins` (0 to 4095) and the select lines show `select` (0 to 15).
 ///
 /// This is the wiring seen from outside, with the inputs of known voltage: an emulated or simulated board uses it to put pins on the converter.
-#[must_use]
 pub fn scan_of_pins(pins: &[u16; COUNT], select: u8) -> Scan {
     let mut scan = [0; SCAN_LEN];
     if select == HIGH_SELECT {
@@ -106,23 +99,19 @@ pub fn scan_of_pins(pins: &[u16; COUNT], select: u8) -> Scan {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::channel::{FSR, MYO_EXTENSOR, MYO_SELECT, SAMPLE_MAX};
+    use crate::channel::{FSR, MYO_EXTENSOR, MYO_SELECT};
+    use core::array;
 
     #[test]
-    fn four_full_scale_codes_are_full_scale() {
-        let frame = Frame::from_scans(7, &[[4_095; SCAN_LEN]; SCANS_PER_FRAME]);
-        assert_eq!(frame.pvdf, [SAMPLE_MAX; PVDF_COUNT]);
-        assert_eq!((frame.switch_a, frame.switch_b, frame.slot()), (SAMPLE_MAX, SAMPLE_MAX, 7));
-    }
-
-    #[test]
-    fn each_rank_is_summed_by_itself() {
-        let scans: [Scan; SCANS_PER_FRAME] =
-            core::array::from_fn(|scan| core::array::from_fn(|rank| 4_095 - (100 * scan + 7 * rank) as u16));
-        let frame = Frame::from_scans(7, &scans);
-        let sum = |rank: usize| scans.iter().map(|scan| scan[rank]).sum::<u16>();
-        assert_eq!(frame.pvdf, core::array::from_fn(sum));
-        assert_eq!((frame.switch_a, frame.switch_b), (sum(RANK_SWITCH_A), sum(RANK_SWITCH_B)));
+    fn each_rank_is_summed_by_itself_up_to_full_scale() {
+        let falling: [Scan; SCANS_PER_FRAME] =
+            array::from_fn(|scan| array::from_fn(|rank| 4_095 - (100 * scan + 7 * rank) as u16));
+        for scans in [falling, [[4_095; SCAN_LEN]; SCANS_PER_FRAME]] {
+            let frame = Frame::from_scans(7, &scans);
+            let sum = |rank: usize| scans.iter().map(|scan| scan[rank]).sum::<u16>();
+            assert_eq!(frame.pvdf, array::from_fn(sum));
+            assert_eq!((frame.switch_a, frame.switch_b), (sum(RANK_SWITCH_A), sum(RANK_SWITCH_B)));
+        }
     }
 
     #[test]

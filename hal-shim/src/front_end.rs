@@ -5,7 +5,7 @@
 
 /// PVDF: voltage at rest, the middle of the supply, mV.
 pub const PVDF_REST_MV: u32 = 1_650;
-/// What a film's amplifier gives while the wire to its film is cut, mV: the film's end of the wire has a bias (docs/hardware.md).
+/// PVDF: voltage while the wire to the film is cut, mV: the film's end of the wire has a bias (docs/hardware.md).
 pub const PVDF_CUT_MV: u32 = 1_550;
 
 /// FSR: voltage of an unloaded quadrant, mV.
@@ -19,7 +19,6 @@ pub const FSR_EXPONENT: f64 = 0.9;
 /// FSR: voltage at the pin of a quadrant under `force_n` newtons, mV, before the converter clips it.
 ///
 /// `powf` is not in `core`, so the caller passes it: `f64::powf` on a PC.
-#[must_use]
 pub fn fsr_mv(force_n: f64, powf: fn(f64, f64) -> f64) -> f64 {
     f64::from(FSR_REST_MV) + FSR_MV_AT_1N * powf(force_n.max(0.0), FSR_EXPONENT)
 }
@@ -32,7 +31,6 @@ pub const FSR_TILT: f64 = 1.0;
 ///
 /// The signs are those of the paper's formulas: `Fx = (A + B) - (C + D)`, `Fy = (A + D) - (C + B)`. A quadrant cannot
 /// pull: where the tilt would lift one, it reads zero.
-#[must_use]
 pub fn fsr_quadrants_n(normal_n: f64, shear_x_n: f64, shear_y_n: f64) -> [f64; 4] {
     let even = normal_n / 4.0;
     let x = FSR_TILT * shear_x_n / 4.0;

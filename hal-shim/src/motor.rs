@@ -9,7 +9,6 @@ use serde::{Deserialize, Serialize};
 pub struct Duty(u16);
 
 impl Duty {
-    /// Full motor voltage.
     pub const FULL: Self = Self(1_000);
 
     /// A duty in per mille of full motor voltage; more than 1000 counts as 1000.
@@ -17,8 +16,6 @@ impl Duty {
         Self(if value > 1_000 { 1_000 } else { value })
     }
 
-    /// Per mille of full motor voltage, 0 to 1000.
-    #[must_use]
     pub const fn as_per_mille(self) -> u16 {
         self.0
     }
@@ -42,21 +39,15 @@ pub enum MotorDrive {
     /// Not driven. The gear does not run backwards, so the hand keeps what it holds.
     #[default]
     Coast,
-    /// Closing.
     Close(Duty),
-    /// Opening.
     Open(Duty),
 }
 
 impl MotorDrive {
-    /// Whether it opens the hand.
-    #[must_use]
     pub const fn opens(self) -> bool {
         matches!(self, Self::Open(_))
     }
 
-    /// Whether it closes the hand.
-    #[must_use]
     pub const fn closes(self) -> bool {
         matches!(self, Self::Close(_))
     }
@@ -70,6 +61,5 @@ impl MotorDrive {
 /// - before the first call, after [`MotorDrive::Coast`], and after a panic or a reset by the watchdog, neither side is
 ///   driven.
 pub trait MotorBridge {
-    /// Drives the motor as told until the next call.
     fn drive(&mut self, drive: MotorDrive);
 }

@@ -10,7 +10,6 @@ use crate::channel::{
     SWITCH_INPUTS,
 };
 
-/// Slots in a slow frame.
 pub const SLOTS: usize = FRAMES_PER_SLOW_FRAME as usize;
 
 /// Slots that share the array's work, one after the other: in fewer, a tick would last into the next frame.
@@ -34,14 +33,12 @@ pub enum Job {
     EndOfCycle,
 }
 
-/// One slot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Slot {
     /// State of the select lines, 0 to 15.
     pub select: u8,
     /// The channel that is read from switch A, an index in [`CHANNELS`].
     pub switch_a: Option<u8>,
-    /// The channel that is read from switch B.
     pub switch_b: Option<u8>,
 }
 
@@ -58,7 +55,6 @@ const AGAIN: [Option<usize>; SLOTS - SWITCH_INPUTS as usize] = [
     None,
 ];
 
-/// Every slot of a slow frame.
 pub static SCHEDULE: [Slot; SLOTS] = {
     let mut slots = [Slot { select: 0, switch_a: None, switch_b: None }; SLOTS];
     let mut select = 0;
@@ -104,7 +100,6 @@ const fn last_reading(first: usize, count: usize) -> u8 {
 }
 
 /// The slot in which a job runs, after its readings.
-#[must_use]
 pub const fn slot_of(job: Job) -> u8 {
     let array = last_reading(ARRAY, ARRAY_COUNT) + 1;
     match job {
@@ -118,7 +113,6 @@ pub const fn slot_of(job: Job) -> u8 {
 }
 
 /// State of the select lines in this slot, 0 to 15. A slot above 24 is taken modulo 25.
-#[must_use]
 pub const fn select_of_slot(slot: u8) -> u8 {
     SCHEDULE[(slot % FRAMES_PER_SLOW_FRAME) as usize].select
 }
@@ -158,20 +152,13 @@ mod tests {
 
     #[test]
     fn a_job_comes_after_its_readings_and_before_the_cycle_ends() {
-        let reads_after = |job, first: usize, count: usize| {
-            SCHEDULE[usize::from(slot_of(job)) + 1..].iter().any(|slot| {
-                [slot.switch_a, slot.switch_b]
-                    .into_iter()
-                    .flatten()
-                    .any(|channel| (first..first + count).contains(&usize::from(channel)))
-            })
-        };
-        assert!(
-            !reads_after(Job::Forces, FSR, FSR_COUNT) && !reads_after(Job::ArrayBegins, ARRAY, ARRAY_COUNT)
-        );
-        assert!(
-            slot_of(Job::MlpDecides) < slot_of(Job::Think) && slot_of(Job::Save) < slot_of(Job::EndOfCycle)
-        );
+        for (job, first, count) in [(Job::Forces, FSR, FSR_COUNT), (Job::ArrayBegins, ARRAY, ARRAY_COUNT)] {
+            let later = SCHEDULE[usize::from(slot_of(job)) + 1..].iter();
+            let mut read_later = later.flat_map(|slot| [slot.switch_a, slot.switch_b]).flatten();
+            assert!(read_later.all(|n| !(first..first + count).contains(&usize::from(n))), "{job:?}");
+        }
+        let jobs = [Job::Forces, Job::ArrayBegins, Job::MlpDecides, Job::Think, Job::Save, Job::EndOfCycle];
+        assert!(jobs[1..].is_sorted_by_key(|&job| slot_of(job)));
         assert_eq!(usize::from(slot_of(Job::EndOfCycle)), SLOTS - 1);
         for job in [Job::Think, Job::Save] {
             assert_eq!(SCHEDULE[usize::from(slot_of(job))].switch_b, None);

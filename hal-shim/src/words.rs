@@ -2,9 +2,8 @@
 //!
 //! New ones are added at the end: their place is their number on the wire.
 
-mod spoken;
-
 use core::cmp::Ordering;
+use core::fmt;
 
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
@@ -31,28 +30,57 @@ pub enum GripMode {
     Settle,
 }
 
-/// Why the mode changed.
+impl GripMode {
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Standby => "standby",
+            Self::Wearer => "wearer",
+            Self::Watch => "watch",
+            Self::Slip => "slip",
+            Self::Incipient => "incipient slip",
+            Self::Settle => "settle",
+        }
+    }
+}
+
+impl fmt::Display for GripMode {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+/// Cause of a change of mode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum Cause {
-    /// Every sensor that the reflex needs gives readings.
     SensorsReady,
-    /// A sensor that the reflex needs gives none.
     SensorsLost,
     /// A myosensor became active, a drive command came, or a behaviour answers slip itself.
     TakenOver,
     /// The muscles, the line and the behaviour no longer move the hand.
     Released,
-    /// This detector reports slip.
     Slip(DetectorId),
-    /// This detector warns of slip.
     Incipient(DetectorId),
     /// The closing pulse is over, or the force ceiling is reached.
     PulseOver,
-    /// The object has settled.
     Settled,
 }
 
-/// Why a sensor gives no number.
+impl fmt::Display for Cause {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::SensorsReady => "every sensor that the reflex needs gives readings",
+            Self::SensorsLost => "a sensor that the reflex needs gives none",
+            Self::TakenOver => "somebody else moves the hand",
+            Self::Released => "nobody else moves the hand any more",
+            Self::Slip(id) => return write!(f, "{} reports slip", id.name()),
+            Self::Incipient(id) => return write!(f, "{} warns of slip", id.name()),
+            Self::PulseOver => "the pulse is over",
+            Self::Settled => "the object has settled",
+        })
+    }
+}
+
+/// Reason for which a sensor gives no number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum Reason {
     /// Below its live zero: a cut wire, a lost supply.
@@ -86,49 +114,35 @@ pub enum Capability {
     WearerIntent,
 }
 
-/// The source that drives the motor in a tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum DriveSource {
-    /// None: the motor is not driven.
     #[default]
     Nobody,
-    /// The wearer's muscles.
     Wearer,
     /// A drive command from the serial line.
     Link,
-    /// The slip reflex.
     Reflex,
-    /// A behaviour: [`behaviour`](crate::behaviour).
     Behaviour,
 }
 
-/// A fault that the board reports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum Fault {
-    /// A sensor gives no number any more.
     SensorLost {
         /// Index in [`CHANNELS`](crate::channel::CHANNELS).
         channel: u8,
-        /// Why.
         reason: Reason,
     },
-    /// A lost sensor gives numbers again.
     SensorBack {
         /// Index in [`CHANNELS`](crate::channel::CHANNELS).
         channel: u8,
     },
-    /// Too few sensors are left for this ability.
     CapabilityLost(Capability),
-    /// Enough sensors for this ability are back.
     CapabilityBack(Capability),
     /// Frames were lost: the converter or its DMA fell behind and was restarted.
     FramesLost {
-        /// Number of lost frames.
         count: u32,
     },
-    /// The last run ended with the watchdog's reset.
     WatchdogReset,
-    /// The last run ended in a panic.
     PanicReset,
     /// The force sensor was loaded when the hand was switched on. Its readings still count from the calibrated zero,
     /// which the board never takes by itself.
@@ -154,12 +168,12 @@ pub enum Fault {
     NeverUnloaded,
 }
 
-/// Why the motor is not driven although a source asks for it.
+/// Reason for which the motor is not driven although a source asks for it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum MotorStop {
-    /// It stalled while closing. Opening is allowed.
+    /// Opening is allowed.
     ClosingStalled,
-    /// It stalled while opening: at its stop, or the gear is jammed. A new opening command is tried again.
+    /// At its stop, or the gear is jammed. A new opening command is tried again.
     OpeningStalled,
     /// Too much current for too long: closing is stopped until the motor has cooled. Opening is allowed.
     Hot,
@@ -168,8 +182,6 @@ pub enum MotorStop {
 }
 
 impl MotorStop {
-    /// The reason in words.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::ClosingStalled => "it stalled as it closed",
@@ -180,7 +192,7 @@ impl MotorStop {
     }
 }
 
-/// What a teacher says about one output of the network (Tada 2006, equations 1 and 2).
+/// A teacher's label for one output of the network (Tada 2006, equations 1 and 2).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum Code {
     /// v1: object and hand move against each other, it slips. v2: the hand moves down.
@@ -193,8 +205,6 @@ pub enum Code {
 }
 
 impl Code {
-    /// -1, 0 or 1.
-    #[must_use]
     pub const fn sign(self) -> i32 {
         match self {
             Self::Minus => -1,
@@ -203,7 +213,6 @@ impl Code {
         }
     }
 
-    /// The code of a number's sign.
     pub fn from_sign(number: i32) -> Self {
         match number.cmp(&0) {
             Ordering::Less => Self::Minus,
@@ -216,43 +225,37 @@ impl Code {
 /// Relative motion (v1, equation 1) and direction (v2, equation 2).
 pub type Codes = [Code; 2];
 
-/// Why the network learns nothing at the moment.
+/// Reason for which the network does not learn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum NoLesson {
     /// No teacher, or too few codes yet.
     Absent,
-    /// The teacher's last picture is too old.
     Late,
     /// The codes were opposite within a short time, or v1 says that nothing moves and v2 that the hand moves.
     Contradicting,
     /// Both codes are 0: neither hand nor object moves.
     NothingMoves,
-    /// Nothing is held.
     NoGrasp,
     /// The receptors are disturbed: the reflex or the wearer moves the hand, or an impact rings.
     Disturbed,
 }
 
-/// How a person at the hand consents to commands of the serial line.
+/// Source of a consent to commands of the serial line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum Consent {
     /// Switched on with a finger that is known to hold nothing.
     PowerUp,
     /// Both muscles, held for two seconds.
     Muscles,
-    /// The blue button.
     Button,
 }
 
 /// The commands that the serial line may give at the moment.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum Line {
-    /// Reading only.
     #[default]
     Reading,
-    /// Reading and commands, by consent.
     Armed {
-        /// Time left, s.
         left_s: u8,
     },
     /// Commands without consent: the setting `line-trusted-flag`.
@@ -262,7 +265,6 @@ pub enum Line {
 /// Kind of record that outlives a power cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum Kept {
-    /// The network's weights.
     Network,
     /// The force sensor's zero.
     Zero,
@@ -273,24 +275,17 @@ pub enum Kept {
 }
 
 impl Kept {
-    /// Every kind of record, in wire order.
     pub const ALL: [Self; 4] = [Self::Network, Self::Zero, Self::Settings, Self::Emg];
 }
 
-/// Prompt to the wearer during the calibration of the myosensors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum Prompt {
-    /// Relax.
     Rest,
-    /// Hold the contraction that shall close the hand.
     Close,
-    /// Hold the contraction that shall open it.
     Open,
 }
 
 impl Prompt {
-    /// The message to the wearer.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Rest => "let the arm lie and relax",
@@ -300,36 +295,25 @@ impl Prompt {
     }
 }
 
-/// Why a calibration of the myosensors was not taken.
+/// Reason for which a calibration of the myosensors was refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum CalibrationRefusal {
     /// An envelope wandered while the wearer should rest: a contraction, a loose electrode, interference.
     RestNotQuiet,
-    /// Closing did not stand out from rest.
     NoClosing,
-    /// Opening did not stand out from rest.
     NoOpening,
-    /// Both contractions drive the electrodes in the same proportion.
     SameDirection,
-    /// The states differ, but by less than they fluctuate.
     Overlap,
-    /// An envelope stood still during a contraction, which no muscle's does.
     NotAMuscle,
-    /// An envelope was at the top of its range.
     Saturated,
-    /// A sensor gave no number.
     SensorLost,
-    /// The words are not those of a model.
     Damaged,
     /// The hand came to hold something, or its force sensor gave no number: the muscles must be able to open it.
     Loaded,
-    /// The button was pressed again.
     Stopped,
 }
 
 impl CalibrationRefusal {
-    /// The message to the wearer.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Loaded => "something was held, or may have been",
@@ -347,27 +331,24 @@ impl CalibrationRefusal {
     }
 }
 
-impl core::fmt::Display for CalibrationRefusal {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+impl fmt::Display for CalibrationRefusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.name())
     }
 }
 
-/// Whether contractions still fit the calibration of the myosensors.
+/// Agreement of contractions with the calibration of the myosensors.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum Fit {
     /// The contractions fit, or it is not known.
     #[default]
     Fits,
-    /// They do not fit: the electrodes have moved, or the wearer contracts differently. A new calibration is needed.
+    /// The electrodes have moved, or the wearer contracts differently: a new calibration is needed.
     Moved,
-    /// They fit with the electrodes exchanged.
     Exchanged,
 }
 
 impl Fit {
-    /// The fit in words.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Fits => "it fits what the electrodes do",
@@ -377,18 +358,16 @@ impl Fit {
     }
 }
 
-/// How the calibration of the myosensors goes on.
+/// Progress of a calibration of the myosensors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum Calibration {
     /// Prompt for the next 5 s.
     Asks(Prompt),
-    /// The new calibration is in force.
     Done {
         /// The smallest distance of two of the three states, in thousandths of their common standard deviation.
         separation_permille: i32,
     },
     /// The calibration was refused; the one before stays in force.
     Refused(CalibrationRefusal),
-    /// Whether the calibration in force still fits has changed.
     Fit(Fit),
 }

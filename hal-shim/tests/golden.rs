@@ -1,12 +1,11 @@
-//! What follows from the types of the messages: `python/tenax/wire.json` (the types, and the bytes of a message of each kind) and
-//! the tables of `docs/protocol.md`. Each is held as a file, and is written by this test where it may be.
+//! `python/tenax/wire.json` follows from the types of the messages: the types, and the bytes of a message of each kind.
 //!
-//! A byte that changes would let a monitor of yesterday read nonsense. So the JSON is only written when [`VERSION`] is above the
-//! file's; nothing else lets a change pass. The test fails once after it has written, so that somebody looks at what changed.
+//! A changed byte would let an older monitor read nonsense: the file is only written when [`VERSION`] is above its own. The test fails
+//! once after it has written, so that a person looks at the change.
 
 mod schema;
 
-use std::fmt::{Debug, Write as _};
+use std::fmt::Debug;
 use std::fs;
 
 use postcard_schema::Schema;
@@ -23,9 +22,6 @@ use tenax_hal_shim::words::DriveSource;
 use self::schema::{Types, messages};
 
 const JSON: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../python/tenax/wire.json");
-const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/protocol.md");
-const BEGIN: &str = "<!-- from the types: cargo test -p tenax-hal-shim --test golden -->\n";
-const END: &str = "<!-- end -->\n";
 
 fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
@@ -105,21 +101,5 @@ fn the_messages_of_this_version_are_those_that_are_held() {
         );
         fs::write(JSON, &now).expect("it can be written");
         panic!("{JSON} is of version {VERSION} now: look at it, and run the test again");
-    }
-}
-
-#[test]
-fn the_page_has_the_tables_of_the_types() {
-    let mut types = Types::default();
-    types.add(Down::SCHEMA);
-    types.add(Up::SCHEMA);
-    let page = fs::read_to_string(PAGE).expect("the page is part of the repository");
-    let (before, rest) = page.split_once(BEGIN).expect("it has a place for them");
-    let (_, after) = rest.split_once(END).expect("which ends");
-    let mut now = String::new();
-    write!(now, "{before}{BEGIN}\n{}{END}{after}", types.markdown()).expect("memory");
-    if page != now {
-        fs::write(PAGE, now).expect("it can be written");
-        panic!("the tables of {PAGE} are those of the types now: look at them, and run the test again");
     }
 }

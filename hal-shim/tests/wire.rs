@@ -1,16 +1,22 @@
 //! The wire under garbage, loss and cuts. A failing case prints its seed and is kept by proptest.
 
+use std::fmt::Debug;
+
 use proptest::collection::vec;
+use proptest::option;
 use proptest::prelude::*;
+use proptest::sample::Index;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 use tenax_hal_shim::behaviour::Behaviour;
 use tenax_hal_shim::channel::{COUNT, PVDF_COUNT};
 use tenax_hal_shim::detector::{DetectorHealth, DetectorId, DetectorSet, Direction, Evidence};
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::wire::{
-    About, Answer, BAUD, BadFrame, Counters, DETECTORS_MAX, Down, FRAME_MAX, Identity, KEPT_MAX, Last,
-    NetworkState, PIECE_MAX, Raw, Receiver, ResetCause, Restored, SETTINGS_MAX, SETTINGS_PER_ANSWER, Senses,
-    Setting, Slow, TickRecord, Up, WHY_MAX, encode,
+    About, Answer, BAUD, BadFrame, Counters, DETECTORS_MAX, Down, FRAME_MAX, Forces, Identity, KEPT_MAX,
+    Last, NetworkState, PIECE_MAX, Raw, Receiver, ResetCause, Restored, SETTINGS_MAX, SETTINGS_PER_ANSWER,
+    Senses, Setting, Slow, TickRecord, Up, WHY_MAX, encode,
 };
 use tenax_hal_shim::words::{Code, DriveSource, Fault, GripMode, Kept, Line, NoLesson};
 
@@ -33,49 +39,104 @@ fn down() -> impl Strategy<Value = Down> {
     ]
 }
 
+fn up() -> impl Strategy<Value = Up> {
+    prop_oneof![
+        any::<u32>().prop_map(|frames| Up::Counters(Counters { frames, ..Counters::default() })),
+        any::<(u16, u32)>().prop_map(|(of, frame)| Up::Answer { of, frame, answer: Answer::Done }),
+        Just(Up::Raw(Raw::default())),
+        Just(Up::Senses(Senses { frame: 24, samples: [8_191; COUNT], films: [40; PVDF_COUNT] })),
+    ]
+}
+
 fn answer(answer: Answer) -> Up {
     Up::Answer { of: u16::MAX, frame: u32::MAX, answer }
 }
 
-fn receive(bytes: &[u8]) -> Vec<Result<(u16, Down), BadFrame>> {
+fn receive<T: DeserializeOwned>(bytes: &[u8]) -> Vec<Result<(u16, T), BadFrame>> {
     let mut receiver = Receiver::new();
     bytes
         .iter()
-        .filter_map(|&byte| receiver.push::<Down>(byte))
+        .filter_map(|&byte| receiver.push::<T>(byte))
         .map(|frame| frame.map(|received| (received.sequence, received.message)))
         .collect()
 }
 
-fn frame(sequence: u16, message: &Down) -> Vec<u8> {
+fn frame(sequence: u16, message: &impl Serialize) -> Vec<u8> {
     let mut buffer = [0; FRAME_MAX];
     encode(sequence, message, &mut buffer).unwrap().to_vec()
 }
 
-proptest! {
-    #[test]
-    fn what_is_sent_arrives(messages in vec((any::<u16>(), down()), 1..20)) {
-        let bytes: Vec<u8> = messages.iter().flat_map(|(sequence, message)| frame(*sequence, message)).collect();
-        prop_assert_eq!(receive(&bytes), messages.into_iter().map(Ok).collect::<Vec<_>>());
-    }
+/// Damage to a frame; a zero follows, so that the next frame is whole.
+#[derive(Clone, Debug)]
+enum Damage {
+    Flip(Index, u8),
+    Cut(Index),
+    Insert(Index, u8),
+    Replace(Vec<u8>),
+}
 
+fn damage() -> impl Strategy<Value = Option<Damage>> {
+    option::of(prop_oneof![
+        (any::<Index>(), 0..8u8).prop_map(|(at, bit)| Damage::Flip(at, bit)),
+        any::<Index>().prop_map(Damage::Cut),
+        any::<(Index, u8)>().prop_map(|(at, byte)| Damage::Insert(at, byte)),
+        vec(any::<u8>(), 0..700).prop_map(Damage::Replace),
+    ])
+}
+
+fn damaged(mut bytes: Vec<u8>, damage: Damage) -> Vec<u8> {
+    match damage {
+        Damage::Flip(at, bit) => {
+            let at = at.index(bytes.len());
+            bytes[at] ^= 1 << bit;
+        }
+        Damage::Cut(at) => bytes.truncate(at.index(bytes.len())),
+        Damage::Insert(at, byte) => bytes.insert(at.index(bytes.len()), byte),
+        Damage::Replace(others) => bytes = others,
+    }
+    bytes.push(0);
+    bytes
+}
+
+/// Every whole frame arrives, and of the damaged ones nothing that was not sent.
+fn arrives<T>(sent: Vec<(T, Option<Damage>)>) -> Result<(), TestCaseError>
+where
+    T: Serialize + DeserializeOwned + Clone + Debug + PartialEq,
+{
+    let (mut bytes, mut whole) = (Vec::new(), Vec::new());
+    for (number, (message, damage)) in (0..).zip(&sent) {
+        let frame = frame(number, message);
+        match damage.clone() {
+            None => {
+                whole.push(number);
+                bytes.extend(frame);
+            }
+            Some(damage) => bytes.extend(damaged(frame, damage)),
+        }
+    }
+    let heard: Vec<(u16, T)> = receive(&bytes).into_iter().flatten().collect();
+    for (number, message) in &heard {
+        prop_assert_eq!(Some(message), sent.get(usize::from(*number)).map(|(message, _)| message));
+    }
+    prop_assert!(whole.iter().all(|number| heard.iter().any(|(heard, _)| heard == number)), "{heard:?}");
+    Ok(())
+}
+
+proptest! {
+    // Shows L5.
     #[test]
-    fn garbage_is_no_message_and_the_next_frame_arrives(garbage in vec(any::<u8>(), 0..2_000), message in down()) {
-        let mut bytes = garbage;
-        bytes.push(0);
-        let before = receive(&bytes);
-        prop_assert!(before.iter().all(Result::is_err), "{before:?}");
-        bytes.extend(frame(7, &message));
-        prop_assert_eq!(receive(&bytes).pop(), Some(Ok((7, message))));
+    fn bad_bytes_are_no_message_and_every_whole_frame_arrives(
+        to_the_board in vec((down(), damage()), 1..40),
+        from_the_board in vec((up(), damage()), 1..40),
+    ) {
+        arrives(to_the_board)?;
+        arrives(from_the_board)?;
     }
 
     // Shows L5.
     #[test]
-    fn one_wrong_bit_is_never_another_command(message in down(), at in any::<prop::sample::Index>(), bit in 0..8u8) {
-        let mut bytes = frame(1, &message);
-        let at = at.index(bytes.len());
-        bytes[at] ^= 1 << bit;
-        bytes.push(0);
-        for received in receive(&bytes).into_iter().flatten() {
+    fn one_wrong_bit_is_never_another_command(message in down(), at in any::<Index>(), bit in 0..8u8) {
+        for received in receive::<Down>(&damaged(frame(1, &message), Damage::Flip(at, bit))).into_iter().flatten() {
             prop_assert_eq!(received, (1, message));
         }
     }
@@ -86,7 +147,7 @@ fn another_version_is_named() {
     let mut buffer = [0; FRAME_MAX];
     // The same envelope as `encode` writes, with version 9 and a message that this version does not know.
     let bytes = encode_as(9, &mut buffer);
-    assert_eq!(receive(&bytes), [Err(BadFrame::Version(9))]);
+    assert_eq!(receive::<Down>(&bytes), [Err(BadFrame::Version(9))]);
 }
 
 fn encode_as(version: u8, buffer: &mut [u8]) -> Vec<u8> {
@@ -102,7 +163,7 @@ fn an_endless_frame_is_too_long_and_the_next_arrives() {
     let mut bytes = vec![1; 10 * FRAME_MAX];
     bytes.push(0);
     bytes.extend(frame(2, &Down::Ping));
-    assert_eq!(receive(&bytes), [Err(BadFrame::TooLong), Ok((2, Down::Ping))]);
+    assert_eq!(receive::<Down>(&bytes), [Err(BadFrame::TooLong), Ok((2, Down::Ping))]);
 }
 
 #[test]
@@ -125,7 +186,7 @@ fn the_longest_message_fits_a_frame() {
         health: DetectorHealth::Blind,
         raw: i32::MIN,
     };
-    let forces = tenax_hal_shim::wire::Forces {
+    let forces = Forces {
         fn_mn: i32::MIN,
         load_mn: i32::MIN,
         fx_mn: i32::MIN,
@@ -148,10 +209,9 @@ fn the_longest_message_fits_a_frame() {
         line: Line::Armed { left_s: u8::MAX },
         behaviour: Some(Behaviour::Turn { by_ddeg: i16::MIN }),
     };
-    let mut buffer = [0; FRAME_MAX];
-    let length = encode(u16::MAX, &Up::Slow(slow), &mut buffer).unwrap().len();
-    assert!(length < FRAME_MAX, "{length}");
-    let bits_a_second = length * 10 * 80;
+    let slow = length(&Up::Slow(slow));
+    assert!(slow < FRAME_MAX, "{slow}");
+    let bits_a_second = slow * 10 * 80;
     assert!(bits_a_second < 921_600 / 2, "slow frames may use at most half of the line: {bits_a_second}");
     let network = NetworkState {
         frame: u32::MAX,
@@ -161,28 +221,35 @@ fn the_longest_message_fits_a_frame() {
         teacher_age_ms: Some(u16::MAX),
         no_lesson: Some(NoLesson::Disturbed),
     };
-    assert!(encode(u16::MAX, &answer(Answer::Network(network)), &mut buffer).is_some());
-    let settings = [Setting { id: u8::MAX, value: i32::MIN }; SETTINGS_PER_ANSWER].into_iter().collect();
-    assert!(encode(u16::MAX, &answer(Answer::Settings(settings)), &mut buffer).is_some());
-    let settings = [Setting { id: u8::MAX, value: i32::MIN }; SETTINGS_MAX].into_iter().collect();
+    let setting = Setting { id: u8::MAX, value: i32::MIN };
     let identity = Identity { build: u64::MAX, chip: [u32::MAX; 3], reset: ResetCause::Other };
+    let settings = [setting; SETTINGS_MAX].into_iter().collect();
     let about = About { identity, schema: u64::MAX, frames: u32::MAX, settings };
-    assert!(encode(u16::MAX, &answer(Answer::About(about)), &mut buffer).is_some());
     let bytes = [u8::MAX; PIECE_MAX].into_iter().collect();
     let why = [u8::MAX; WHY_MAX].into_iter().collect();
     let last = Last { after: Some(Fault::TooManyRestarts), why, length: u16::MAX, from: u16::MAX, bytes };
-    assert!(encode(u16::MAX, &answer(Answer::Last(last)), &mut buffer).is_some());
-    let restored = Restored::of(Kept::Network, &[0; KEPT_MAX]).unwrap();
-    assert!(encode(u16::MAX, &Up::Restored(restored), &mut buffer).is_some());
+    for fits in [
+        answer(Answer::Network(network)),
+        answer(Answer::Settings([setting; SETTINGS_PER_ANSWER].into_iter().collect())),
+        answer(Answer::About(about)),
+        answer(Answer::Last(last)),
+        Up::Restored(Restored::of(Kept::Network, &[0; KEPT_MAX]).unwrap()),
+    ] {
+        length(&fits);
+    }
     let senses = Senses { frame: u32::MAX, samples: [u16::MAX; COUNT], films: [u16::MAX; PVDF_COUNT] };
-    let senses = encode(u16::MAX, &Up::Senses(senses), &mut buffer).unwrap().len();
     let mut raw = Raw::default();
     raw.put(&Frame { sequence: u32::MAX, ..Frame::lost(0) });
-    let raw = encode(u16::MAX, &Up::Raw(raw), &mut buffer).unwrap().len();
     // In a slow frame: five messages of frames and one of readings leave a quarter of the line to everything else.
-    let part = (5 * raw + senses) as f64 / f64::from(BAUD / 10 / 80);
-    assert!(part < 0.78, "{raw} {senses}: {part}");
+    let bytes = 5 * length(&Up::Raw(raw)) + length(&Up::Senses(senses));
+    let part = bytes as f64 / f64::from(BAUD / 10 / 80);
+    assert!(part < 0.78, "{bytes}: {part}");
     let counters = Counters { frames: u32::MAX, ..Counters::default() };
     assert!(encode(0, &Up::Counters(counters), &mut [0; 40]).is_some());
     assert!(encode(0, &Up::Counters(counters), &mut [0; 8]).is_none(), "too small a buffer is no panic");
+}
+
+/// Length of the longest frame of a message, bytes.
+fn length(message: &Up) -> usize {
+    encode(u16::MAX, message, &mut [0; FRAME_MAX]).expect("it fits a frame").len()
 }

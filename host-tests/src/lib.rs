@@ -1,28 +1,32 @@
-//! What the tests in `tests/` share: a fingertip on a bench, with a knob for the voltage of every pin.
+//! A fingertip on a bench, with a voltage for every pin: shared by all tests in `tests/`.
 #![forbid(unsafe_code)]
 
-pub mod onsets;
 pub mod teaching;
+
+use std::f64::consts::TAU;
 
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use tenax_hal_shim::channel::{
-    ARRAY, ARRAY_COUNT, CHANNELS, COUNT, FRAMES_PER_SLOW_FRAME, FSR, HIGH_SELECT, MYO_EXTENSOR, MYO_FLEXOR,
-    PVDF, PVDF_COUNT, RANK_SWITCH_A, RANK_SWITCH_B, SAMPLE_MAX, sample_from_mv,
+    ARRAY, ARRAY_COUNT, CHANNELS, COUNT, FRAMES_PER_SLOW_FRAME, FSR, FSR_COUNT, HIGH_SELECT, MYO_EXTENSOR,
+    MYO_FLEXOR, PVDF, PVDF_COUNT, RANK_SWITCH_A, RANK_SWITCH_B, SAMPLE_MAX, sample_from_mv,
 };
 use tenax_hal_shim::frame::{Frame, scan_of_pins};
 use tenax_hal_shim::front_end::{MYO_REST_MV, fsr_mv, fsr_quadrants_n};
-use tenax_hal_shim::motor::MotorDrive;
+use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::schedule::{Job, slot_of};
 use tenax_hal_shim::wire::{Down, Event, EventKind, Setting, Slow, TickRecord};
-use tenax_hal_shim::words::{Cause, DriveSource, GripMode, Kept};
+use tenax_hal_shim::words::{Cause, DriveSource, Fault, GripMode, Kept, Reason};
 use tenax_logic::emg::model::EmgModel;
 use tenax_logic::fingertip::Fingertip;
 use tenax_logic::samples::LastSamples;
 use tenax_logic::setting::SettingId;
 use tenax_logic::store::payload;
 
-/// Every channel at rest, the muscles at the wearer's.
+/// Opening of the scenes' hand at full duty, mm a frame: 120 mm/s.
+const FULL_DUTY_MM: f64 = 120.0 / 2_000.0;
+
+/// Every channel at rest, both muscles at the tone of the scenes' wearer.
 fn relaxed() -> [f64; COUNT] {
     let mut pins_mv = CHANNELS.map(|channel| f64::from(channel.rest_mv));
     pins_mv[MYO_FLEXOR] += 50.0;
@@ -50,10 +54,50 @@ pub fn set(id: SettingId, value: i32) -> Down {
     Down::Set(Setting { id: id.number(), value })
 }
 
-/// A fingertip whose pins are set by hand. The converter's noise is +-2 of a 14-bit sample, from a seed.
+/// A sum of twelve uniform numbers: mean 0, variance 1.
+pub fn gauss(rng: &mut ChaCha8Rng) -> f64 {
+    (0..12).map(|_| rng.random_range(-0.5..0.5)).sum()
+}
+
+pub fn opens(drives: &[MotorDrive]) -> bool {
+    drives.iter().any(|drive| drive.opens())
+}
+
+pub fn closes(drives: &[MotorDrive]) -> bool {
+    closing_frames(drives) > 0
+}
+
+pub fn closing_frames(drives: &[MotorDrive]) -> usize {
+    drives.iter().filter(|drive| drive.closes()).count()
+}
+
+pub fn rests(drives: &[MotorDrive]) -> bool {
+    drives.iter().all(|drive| *drive == MotorDrive::Coast)
+}
+
+/// Distances by which this frame opens and closes the scenes' hand, mm.
+fn moved_mm(drive: MotorDrive) -> (f64, f64) {
+    let mm = |duty: Duty| FULL_DUTY_MM * f64::from(duty.as_per_mille()) / 1e3;
+    match drive {
+        MotorDrive::Open(duty) => (mm(duty), 0.0),
+        MotorDrive::Close(duty) => (0.0, mm(duty)),
+        MotorDrive::Coast => (0.0, 0.0),
+    }
+}
+
+/// Distance by which these frames open the scenes' hand, mm; closing does not count.
+pub fn opened_mm(drives: &[MotorDrive]) -> f64 {
+    drives.iter().map(|drive| moved_mm(*drive).0).sum()
+}
+
+/// Distance by which this frame closes the scenes' hand, mm.
+pub fn closed_mm(drive: MotorDrive) -> f64 {
+    moved_mm(drive).1
+}
+
+/// A fingertip whose pins are set by the test. The converter's noise is +-2 of a 14-bit sample, from a seed.
 #[derive(Debug)]
 pub struct Bench {
-    /// The logic under test.
     pub fingertip: Fingertip,
     /// Voltage of every pin, mV.
     pub pins_mv: [f64; COUNT],
@@ -62,21 +106,19 @@ pub struct Bench {
     pub slows: Vec<Slow>,
     /// Amplitude of a 60 Hz vibration on all films, mV.
     pub vibration_mv: f64,
-    /// Load that goes from element to element of the array in a slow frame while the whole stays the same, mV at most:
-    /// an object that slides.
+    /// Largest load that moves from one array element to another in a slow frame, mV; their sum is constant. A sliding
+    /// object does this.
     pub sliding_mv: f64,
-    /// How a contraction fluctuates, as a part of it, rms: an envelope that stands still is no muscle's.
+    /// Fluctuation of a contraction, rms, relative to its level above rest.
     pub lively: f64,
-    /// A myosensor's pin whose electrode is off the skin: it does not fluctuate.
+    /// Pin of the myosensor whose electrode is off the skin: it does not fluctuate.
     pub lifted: Option<usize>,
-    /// Select lines that are stuck low, and high, a bit each.
+    /// Select lines that are stuck low, and those stuck high: bit n is line Sn.
     pub stuck_lines: [u8; 2],
-    /// Whether the switches' inputs of known voltage are wired; without, both are at ground.
-    pub known_inputs: bool,
     pub frames: u32,
     samples: LastSamples,
     muscle_noise: ChaCha8Rng,
-    /// Two low-passes each.
+    /// State of two low-passes of each muscle.
     wander: [[f64; 2]; 2],
     noise: ChaCha8Rng,
 }
@@ -87,7 +129,6 @@ impl Bench {
         Self::of(calibrated(), seed)
     }
 
-    /// The same with this fingertip.
     pub fn of(fingertip: Fingertip, seed: u64) -> Self {
         Self {
             fingertip,
@@ -99,7 +140,6 @@ impl Bench {
             lively: 0.06,
             lifted: None,
             stuck_lines: [0; 2],
-            known_inputs: true,
             frames: 0,
             samples: LastSamples::default(),
             muscle_noise: ChaCha8Rng::seed_from_u64(seed ^ 0x0E46),
@@ -118,11 +158,22 @@ impl Bench {
         bench
     }
 
-    /// Loads the force sensor.
+    /// Load on the force sensor, N.
     pub fn load(&mut self, normal_n: f64, shear_n: f64) {
-        for (n, force_n) in fsr_quadrants_n(normal_n, shear_n, 0.0).into_iter().enumerate() {
-            self.pins_mv[FSR + n] = fsr_mv(force_n, f64::powf).min(3_200.0);
+        self.load_quadrants(fsr_quadrants_n(normal_n, shear_n, 0.0));
+    }
+
+    /// Forces on the four quadrants of the force sensor, N.
+    pub fn load_quadrants(&mut self, newtons: [f64; FSR_COUNT]) {
+        for (pin_mv, force_n) in self.pins_mv[FSR..].iter_mut().zip(newtons) {
+            *pin_mv = fsr_mv(force_n, f64::powf).min(3_200.0);
         }
+    }
+
+    /// An electrode off the skin: a constant envelope, mV above the live zero, instead of its muscle's.
+    pub fn lift(&mut self, pin: usize, mv: f64) {
+        self.lifted = Some(pin);
+        self.pins_mv[pin] = f64::from(MYO_REST_MV) + mv;
     }
 
     /// Presses every element of the array alike, mV above rest.
@@ -140,7 +191,7 @@ impl Bench {
     pub fn frame(&mut self) -> Frame {
         let sequence = self.frames;
         self.frames += 1;
-        let phase = f64::from(sequence) * 60.0 / 2_000.0 * std::f64::consts::TAU;
+        let phase = f64::from(sequence) * 60.0 / 2_000.0 * TAU;
         let shake_mv = self.vibration_mv * phase.sin();
         if self.sliding_mv > 0.0 && sequence.is_multiple_of(u32::from(FRAMES_PER_SLOW_FRAME)) {
             self.slide();
@@ -161,23 +212,19 @@ impl Bench {
         let shown = frame.select() & !low | high;
         let wired = scan_of_pins(&samples, shown);
         frame.switch_a = wired[RANK_SWITCH_A];
-        frame.switch_b = match shown {
-            HIGH_SELECT if self.known_inputs => SAMPLE_MAX,
-            HIGH_SELECT => 0,
-            _ => wired[RANK_SWITCH_B],
-        };
+        // An input of known voltage.
+        frame.switch_b = if shown == HIGH_SELECT { SAMPLE_MAX } else { wired[RANK_SWITCH_B] };
         frame
     }
 
-    /// Both myosensors' pins: what is above rest fluctuates, slower than 6 Hz, and each electrode hears 5 % of the other one's
-    /// contraction, as the wearer was calibrated. What an electrode's fault gives is not heard by the other.
+    /// Voltages of both myosensors' pins, mV. A contraction fluctuates below 6 Hz, and 5 % of it is heard by the other electrode.
+    /// A fault of an electrode is not heard by the other.
     fn contract(&mut self) -> [f64; 2] {
         const PART: f64 = 0.02;
         const HEARS: f64 = 0.05;
         let own = [MYO_FLEXOR, MYO_EXTENSOR].map(|pin| {
             let wander = &mut self.wander[pin - MYO_FLEXOR];
-            let normal: f64 = (0..12).map(|_| self.muscle_noise.random_range(-0.5..0.5)).sum();
-            wander[0] += PART * (normal - wander[0]);
+            wander[0] += PART * (gauss(&mut self.muscle_noise) - wander[0]);
             wander[1] += PART * (wander[0] - wander[1]);
             let above_mv = self.pins_mv[pin] - f64::from(MYO_REST_MV);
             // Two low-passes leave 0.071 of white noise. A broken pin does not fluctuate.
@@ -202,13 +249,12 @@ impl Bench {
         }
     }
 
-    /// Gives one frame to the fingertip.
     pub fn step(&mut self) -> MotorDrive {
         let frame = self.frame();
         self.give(&frame)
     }
 
-    /// Gives this frame to the fingertip, and collects what it tells.
+    /// Gives this frame to the fingertip; collects its slow frames and events.
     pub fn give(&mut self, frame: &Frame) -> MotorDrive {
         let drive = self.fingertip.tick(frame);
         // As the device does.
@@ -223,12 +269,64 @@ impl Bench {
         drive
     }
 
-    /// Gives many frames; how the motor was driven in each.
+    /// Gives many frames; the drive of each.
     pub fn run(&mut self, frames: u32) -> Vec<MotorDrive> {
         (0..frames).map(|_| self.step()).collect()
     }
 
-    /// What was decided in every tick of the slow frames so far.
+    /// Gives many frames, of which those at these places of the slow frame are lost; the drive of each.
+    pub fn run_losing(&mut self, places: &[u8], frames: u32) -> Vec<MotorDrive> {
+        let give = |_| {
+            let frame = self.frame();
+            let gone = places.contains(&frame.slot());
+            self.give(&if gone { Frame::lost(frame.sequence) } else { frame })
+        };
+        (0..frames).map(give).collect()
+    }
+
+    /// Voltage of a film that hears mains of 50 Hz, mV.
+    pub fn hum(&mut self, film: usize, mv: f64) {
+        let phase = f64::from(self.frames) * 50.0 / 2_000.0 * TAU;
+        self.pins_mv[film] = f64::from(CHANNELS[PVDF].rest_mv) + mv * phase.sin();
+    }
+
+    /// Sends a command that must be accepted.
+    ///
+    /// # Panics
+    /// If it is refused.
+    pub fn accepts(&mut self, command: Down) {
+        assert_eq!(self.fingertip.command(&command), Ok(()), "{command:?}");
+    }
+
+    /// Holds the button for so many frames and releases it for 0.1 s; the drive of each frame.
+    pub fn press_button(&mut self, frames: u32) -> Vec<MotorDrive> {
+        self.fingertip.button(true);
+        let mut drives = self.run(frames);
+        self.fingertip.button(false);
+        drives.extend(self.run(200));
+        drives
+    }
+
+    pub fn kinds(&self) -> impl Iterator<Item = EventKind> {
+        self.events.iter().map(|event| event.kind)
+    }
+
+    pub fn count(&self, kind: EventKind) -> usize {
+        self.kinds().filter(|other| *other == kind).count()
+    }
+
+    /// Frames in which this channel was reported as lost, with the reasons.
+    pub fn lost(&self, channel: usize) -> Vec<(u32, Reason)> {
+        let lost = self.events.iter().filter_map(|event| match event.kind {
+            EventKind::Fault(Fault::SensorLost { channel: lost, reason }) if usize::from(lost) == channel => {
+                Some((event.frame, reason))
+            }
+            _ => None,
+        });
+        lost.collect()
+    }
+
+    /// Records of every tick of the slow frames so far.
     pub fn ticks(&self) -> impl Iterator<Item = &TickRecord> {
         self.slows.iter().flat_map(|slow| &slow.ticks)
     }
@@ -238,11 +336,9 @@ impl Bench {
         self.ticks().filter(|tick| tick.source == DriveSource::Reflex).count()
     }
 
-    /// How the reflex came into the mode it is in.
-    pub fn last_cause(&self) -> Option<Cause> {
-        self.events.iter().rev().find_map(|event| match event.kind {
-            EventKind::Mode { cause, .. } => Some(cause),
-            _ => None,
-        })
+    /// Causes of the reflex's changes of mode so far.
+    pub fn causes(&self) -> Vec<Cause> {
+        let cause = |kind| if let EventKind::Mode { cause, .. } = kind { Some(cause) } else { None };
+        self.kinds().filter_map(cause).collect()
     }
 }

@@ -1,7 +1,6 @@
 //! Lessons on the bench: vibration and shear that go with what a camera says.
 
 use tenax_hal_shim::channel::{STRAIN, STRAIN_COUNT};
-use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::Down;
 use tenax_hal_shim::words::{Code, Codes, GripMode};
 
@@ -18,7 +17,7 @@ pub const SLIP_MV: f64 = 70.0;
 /// Frames between two pictures.
 pub const PICTURE_FRAMES: u32 = 66;
 /// Age of a picture when it comes, ms.
-const AGE_MS: u16 = 40;
+pub const AGE_MS: u16 = 40;
 
 impl Bench {
     /// Holds something, and was taught seven pick-ups. Nothing vibrates, and the teacher has gone.
@@ -53,14 +52,11 @@ impl Bench {
         }
     }
 
-    /// Sends so many pictures that say this, and gives the frames between them.
-    pub fn teach(&mut self, codes: Codes, pictures: u32) -> Vec<MotorDrive> {
-        let mut drives = Vec::new();
+    /// Sends pictures with these codes, and gives the frames between them.
+    pub fn teach(&mut self, codes: Codes, pictures: u32) {
         for _ in 0..pictures {
-            // Never refused.
-            let _ = self.fingertip.command(&Down::Teach { codes, age_ms: AGE_MS });
-            drives.extend(self.run(PICTURE_FRAMES));
+            self.accepts(Down::Teach { codes, age_ms: AGE_MS });
+            self.run(PICTURE_FRAMES);
         }
-        drives
     }
 }

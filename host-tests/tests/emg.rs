@@ -1,10 +1,11 @@
-//! The wearer's muscles under every fault that a myosensor is known to have: no fault of one electrode is ever proven to be a
-//! contraction, so it moves the hand by little (`logic/src/gate.rs`), and each is reported with its reason; what a real muscle does
-//! is still answered.
+//! Intent of the wearer under every known fault of a myosensor: no fault of one electrode is ever proven to be a contraction, each is
+//! reported with its reason, and contractions are still answered.
+
+use std::cell::Cell;
+use std::f64::consts::TAU;
 
 use proptest::prelude::*;
-use proptest::test_runner::{Config, FileFailurePersistence, RngAlgorithm, RngSeed, TestRng, TestRunner};
-use std::f64::consts::TAU;
+use proptest::test_runner::{Config, RngAlgorithm, RngSeed, TestRng, TestRunner};
 use tenax_hal_shim::channel::sample_from_mv;
 use tenax_logic::emg::decide::Wish;
 use tenax_logic::emg::mains::mains_of;
@@ -12,25 +13,23 @@ use tenax_logic::emg::model::EmgModel;
 use tenax_logic::emg::trust::Quality;
 use tenax_logic::emg::{Emg, Verdict, uv_of_sample};
 
-/// Pairs of readings of a slow frame, s after its begin.
+/// Times of the three pairs of readings in a slow frame, s.
 const AT_S: [f64; 3] = [0.005, 0.008, 0.011];
-/// Time constants of the front ends: the scenes' first-order one of 60 ms rise, and a faster one, s.
+/// Time constants of front ends, s; the first is the scenes', of 60 ms rise.
 const TAUS_S: [f64; 3] = [0.027, 0.015, 0.05];
-/// Cases of each property.
 const CASES: u32 = 256;
 
-/// Noise that needs no more than a seed.
+/// A linear congruential generator: quick, and seeded by a case.
 struct Noise(u64);
 
 impl Noise {
-    /// About normal, deviation 1.
-    fn normal(&mut self) -> f64 {
-        (0..12).map(|_| self.unit()).sum::<f64>() - 6.0
-    }
-
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 40) as f64 / f64::from(1u32 << 24)
+    /// A sum of twelve uniform numbers: mean 0, variance 1.
+    fn gauss(&mut self) -> f64 {
+        let unit = |_| {
+            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (self.0 >> 40) as f64 / f64::from(1u32 << 24)
+        };
+        (0..12).map(unit).sum::<f64>() - 6.0
     }
 }
 
@@ -48,22 +47,22 @@ impl Muscle {
     /// Its level relative to the mean, a slow frame later.
     fn step(&mut self) -> f64 {
         const PART: f64 = 0.2;
-        self.slow[0] += PART * (self.noise.normal() - self.slow[0]);
+        self.slow[0] += PART * (self.noise.gauss() - self.slow[0]);
         self.slow[1] += PART * (self.slow[0] - self.slow[1]);
         (1.0 + 0.15 * self.slow[1] / 0.24).max(0.2)
     }
 }
 
-/// What an electrode's pin does, mV above the live zero, some time after the fault began.
+/// Fault of an electrode.
 #[derive(Clone, Copy, Debug)]
 enum Fault {
     /// A voltage at the pin, mV above ground.
     Constant(f64),
-    /// A lifted electrode: rectified mains through the front end, with its ripple.
+    /// Off the skin: rectified mains through the front end, mV above the live zero, with its ripple.
     Lifted { mv: f64, ripple: f64, hz: f64 },
-    /// It climbs, mV a second.
+    /// A ramp, mV/s.
     Creep(f64),
-    /// Restless: noise on a tone, mV.
+    /// Noise on a tone, mV above the live zero.
     Noisy { rms: f64, tone: f64 },
 }
 
@@ -77,22 +76,22 @@ fn fault() -> impl Strategy<Value = Fault> {
     ]
 }
 
-/// A wearer as in the scenes and one each as in the shared sessions, and nobody.
+/// Means of rest, closing and opening of the scenes' wearer and of one wearer of each recorded session, mV above the live zero.
+const WEARERS: [[[i32; 2]; 3]; 3] = [
+    [[50, 50], [450, 72], [87, 750]],
+    [[61, 48], [445, 165], [156, 1_490]],
+    [[65, 141], [289, 161], [94, 989]],
+];
+
+/// A wearer's calibration; none for the fourth, who is not calibrated.
 fn wearer(n: usize) -> Option<EmgModel> {
-    let mv = |pairs: [[i32; 2]; 3]| {
-        let [rest, close, open] = pairs.map(|pair| pair.map(|mv| 1_000 * mv));
-        EmgModel::of_uv(rest, close, open).expect("they separate")
-    };
-    match n {
-        0 => Some(mv([[50, 50], [450, 72], [87, 750]])),
-        1 => Some(mv([[61, 48], [445, 165], [156, 1_490]])),
-        2 => Some(mv([[65, 141], [289, 161], [94, 989]])),
-        _ => None,
-    }
+    let [rest, close, open] = WEARERS.get(n)?.map(|pair| pair.map(|mv| 1_000 * mv));
+    Some(EmgModel::of_uv(rest, close, open).expect("they separate"))
 }
 
-/// The rest of each of them, mV.
-const RESTS: [[f64; 2]; 4] = [[50.0, 50.0], [61.0, 48.0], [65.0, 141.0], [60.0, 60.0]];
+fn rest_mv(n: usize) -> [f64; 2] {
+    WEARERS.get(n).map_or([60.0; 2], |wearer| wearer[0].map(f64::from))
+}
 
 /// An electrode with a fault from 2 s on; the other one rests.
 struct Pins {
@@ -126,7 +125,7 @@ impl Pins {
                 Fault::Creep(mv_per_s) => mv[side] += mv_per_s * t,
                 Fault::Noisy { rms, tone } => {
                     let wander = 1.0 - (-dt * TAU * 6.0).exp();
-                    self.state += wander * (self.noise.normal() - self.state);
+                    self.state += wander * (self.noise.gauss() - self.state);
                     mv[side] = (tone + rms * self.state / (wander / (2.0 - wander)).sqrt()).max(0.0);
                 }
             }
@@ -134,7 +133,7 @@ impl Pins {
             self.state = if matches!(fault, Fault::Lifted { .. }) { mv[side] } else { 0.0 };
         }
         mv.map(|mv| {
-            let pin = 300.0 + mv + 0.3 * self.noise.normal();
+            let pin = 300.0 + mv + 0.3 * self.noise.gauss();
             let sample = sample_from_mv(pin.max(0.0) as u32);
             (100.0..=3_250.0).contains(&pin).then(|| uv_of_sample(sample))
         })
@@ -156,25 +155,21 @@ fn hear(emg: &mut Emg) {
     }
 }
 
+/// Runs cases of one seed, `PROPTEST_RNG_SEED` or 11.
 fn runner() -> TestRunner {
     let seed = std::env::var("PROPTEST_RNG_SEED").ok().and_then(|seed| seed.parse().ok()).unwrap_or(11);
     println!("seed {seed}, {CASES} cases");
-    let config = Config {
-        cases: CASES,
-        rng_seed: RngSeed::Fixed(seed),
-        failure_persistence: Some(Box::new(FileFailurePersistence::Off)),
-        ..Config::default()
-    };
+    let config =
+        Config { failure_persistence: None, rng_seed: RngSeed::Fixed(seed), ..Config::with_cases(CASES) };
     let mut bytes = [0; 32];
     bytes[..8].copy_from_slice(&u64::to_le_bytes(seed));
     TestRunner::new_with_rng(config, TestRng::from_seed(RngAlgorithm::ChaCha, &bytes))
 }
 
-/// Whether a fault can be seen at all: one that leaves the envelope below where this wearer is active is rest.
+/// Reasons of which one must be reported; none where the envelope stays below this wearer's activity, or at a limit.
 fn must_be_reported(emg_active_mv: f64, fault: Fault) -> Option<&'static [Quality]> {
     use Quality::{Creep, Flat, Hum, LeadOff, Saturated};
     match fault {
-        // On a limit, the pin's noise decides.
         Fault::Constant(pin) if !(98.0..=3_252.0).contains(&pin) => Some(&[LeadOff]),
         Fault::Constant(pin) if pin < 102.0 => None,
         Fault::Constant(pin) if pin > 3_248.0 => Some(&[LeadOff, Saturated, Flat]),
@@ -195,9 +190,9 @@ fn no_fault_of_one_electrode_is_proven_and_each_is_reported() {
         .run(&strategy, |(fault, person, side, tau, seed)| {
             let model = wearer(person);
             let mut emg = Emg::new(model.as_ref());
-            let mut pins = Pins::new(RESTS[person], TAUS_S[tau], seed);
+            let mut pins = Pins::new(rest_mv(person), TAUS_S[tau], seed);
             let (mut last_s, mut reported) = (0.0, Vec::new());
-            // Slow creep takes its time to become activity.
+            // Slow creep becomes activity late.
             let seconds = if matches!(fault, Fault::Creep(_)) { 14.0 } else { 9.0 };
             for slow in 0..(80.0 * seconds) as u32 {
                 pins.slow_frame();
@@ -233,21 +228,19 @@ fn no_fault_of_one_electrode_is_proven_and_each_is_reported() {
         .unwrap();
 }
 
-/// A real wearer's bursts: rises of 50 to 300 ms, levels and fluctuation as on the recordings.
+/// Bursts of a muscle: rises of 50 to 300 ms, levels and fluctuation as on the recordings.
 #[test]
-fn bursts_of_a_real_muscle_are_answered_and_no_sensor_is_doubted() {
+fn bursts_of_a_muscle_are_answered_and_no_sensor_is_doubted() {
     let strategy = (0usize..3, any::<bool>(), 0.05..0.3, 1.35..2.0, 0.4..3.0, any::<u64>());
-    let late = std::cell::RefCell::new(Vec::new());
+    let (sum, bursts) = (Cell::new(0.0), Cell::new(0.0));
     runner()
         .run(&strategy, |(person, opens, rise_s, over, held_s, seed): (usize, bool, f64, f64, f64, u64)| {
-            let model = wearer(person).unwrap();
-            let mut emg = Emg::new(Some(&model));
-            let at = |point: [i32; 2]| point.map(|level| 2f64.powf(f64::from(level) / 1_024.0) / 1e3);
-            let (rest, peak) = (at(model.rest()), at(if opens { model.open() } else { model.close() }));
+            let mut emg = Emg::new(wearer(person).as_ref());
+            let rest = rest_mv(person);
+            let peak = WEARERS[person][if opens { 2 } else { 1 }].map(f64::from);
             let (wished, other) = if opens { (Wish::Open, Wish::Close) } else { (Wish::Close, Wish::Open) };
             let mut muscles = [Muscle::new(seed), Muscle::new(seed ^ 77)];
-            let mut right = 0;
-            let mut held = 0;
+            let (mut right, mut held) = (0, 0);
             for slow in 0..80 * 12 {
                 let waves = [0, 1].map(|n: usize| muscles[n].step());
                 for at in AT_S {
@@ -255,15 +248,12 @@ fn bursts_of_a_real_muscle_are_answered_and_no_sensor_is_doubted() {
                     // Bursts at 2, 5 and 8 s; in between rest.
                     let since = (t - 2.0).rem_euclid(3.0);
                     let within = t > 2.0 && t < 11.0;
-                    let up = if within {
-                        (since / rise_s).min(1.0) * ((held_s - since) / 0.1).clamp(0.0, 1.0)
-                    } else {
-                        0.0
-                    };
+                    let up = (since / rise_s).min(1.0) * ((held_s - since) / 0.1).clamp(0.0, 1.0);
                     let uv = [0, 1].map(|n: usize| {
-                        let calm = 1.0 + (waves[n] - 1.0) / 3.0;
-                        let mv = rest[n] * calm + up * (over * peak[n] * waves[n] - rest[n] * calm).max(0.0);
-                        Some((mv.min(2_900.0) * 1e3) as i32)
+                        let calm = rest[n] * (1.0 + (waves[n] - 1.0) / 3.0);
+                        let rises =
+                            if within { up * (over * peak[n] * waves[n] - calm).max(0.0) } else { 0.0 };
+                        Some(((calm + rises).min(2_900.0) * 1e3) as i32)
                     });
                     let verdict = emg.take(uv);
                     hear(&mut emg);
@@ -276,49 +266,12 @@ fn bursts_of_a_real_muscle_are_answered_and_no_sensor_is_doubted() {
                 }
             }
             if held > 0 {
-                late.borrow_mut().push(f64::from(right) / f64::from(held));
+                sum.set(sum.get() + f64::from(right) / f64::from(held));
+                bursts.set(bursts.get() + 1.0);
             }
             Ok(())
         })
         .unwrap();
-    let late = late.into_inner();
-    let mean = late.iter().sum::<f64>() / late.len() as f64;
-    println!("{:.3} of held bursts answered", mean);
-    assert!(mean > 0.9, "{mean}");
-}
-
-/// Opening follows its envelope: from the reading that supports it to the wish.
-// Shows W3.
-#[test]
-fn opening_is_answered_within_25_ms_of_its_envelope() {
-    let strategy = (0usize..3, 1.4..2.0, 0.03..0.3, any::<bool>(), any::<u64>());
-    runner()
-        .run(&strategy, |(person, over, rise_s, humming, seed): (usize, f64, f64, bool, u64)| {
-            let model = wearer(person).unwrap();
-            let mut emg = Emg::new(Some(&model));
-            let at = |point: [i32; 2]| point.map(|level| 2f64.powf(f64::from(level) / 1_024.0) / 1e3);
-            let (rest, peak) = (at(model.rest()), at(model.open()));
-            let mut muscle = Muscle::new(seed);
-            let (mut supported, mut opened) = (None, None);
-            for slow in 0..80 * 4 {
-                let wave = muscle.step().clamp(0.9, 1.2);
-                for at in AT_S {
-                    let t = f64::from(slow) / 80.0 + at;
-                    let up = ((t - 2.0) / rise_s).clamp(0.0, 1.0);
-                    let flexor = if humming { 500.0 } else { rest[0] + up * (peak[0] - rest[0]) * wave };
-                    let extensor = rest[1] + up * (over * peak[1] * wave - rest[1]);
-                    let verdict = emg.take([flexor, extensor].map(|mv| Some((mv.min(2_900.0) * 1e3) as i32)));
-                    if extensor >= 1.25 * peak[1] {
-                        supported.get_or_insert(t);
-                    }
-                    if verdict.wish == Wish::Open {
-                        opened.get_or_insert(t);
-                    }
-                }
-            }
-            let late_s: f64 = opened.unwrap_or(9.0) - supported.unwrap();
-            prop_assert!(late_s < 0.025, "{} ms", 1e3 * late_s);
-            Ok(())
-        })
-        .unwrap();
+    let answered = sum.get() / bursts.get();
+    assert!(answered > 0.9, "{answered:.3} of held bursts answered");
 }

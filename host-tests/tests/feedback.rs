@@ -1,4 +1,4 @@
-//! What holds of the vibration motor's duty whatever is felt. `bench/tests/feedback.rs` shows that the films do not mind it.
+//! Duty of the vibration motor, for any input.
 
 use proptest::prelude::*;
 use tenax_hal_shim::motor::Duty;
@@ -6,18 +6,17 @@ use tenax_hal_shim::words::GripMode::{self, Incipient, Settle, Slip, Standby, Wa
 use tenax_logic::feedback::{Feedback, Felt};
 
 const OFF: Duty = Duty::per_mille(0);
-/// A burst, and the longest pattern, slow frames.
+/// Length of a burst and of the longest pattern, slow frames.
 const BURST: usize = 5;
 const PATTERN: usize = 15;
+/// The strong choice.
+const STRONG: u16 = 2;
 
-fn modes() -> impl Strategy<Value = GripMode> {
-    prop::sample::select(vec![Standby, Wearer, Watch, Slip, Incipient, Settle])
-}
-
-/// What is felt in a slow frame, and whether the reflex begins to answer slip before it.
+/// Input of a slow frame, and whether the reflex begins to answer slip before it.
 fn felt() -> impl Strategy<Value = (Felt, bool)> {
+    let mode = prop::sample::select(vec![Standby, Wearer, Watch, Slip, Incipient, Settle]);
     let load = prop_oneof![Just(None), any::<i32>().prop_map(Some), (0..40_000).prop_map(Some)];
-    (modes(), load, any::<bool>(), prop::bool::weighted(0.1), prop::bool::weighted(0.1))
+    (mode, load, any::<bool>(), prop::bool::weighted(0.1), prop::bool::weighted(0.1))
         .prop_map(|(mode, load_mn, unloaded, lost, slips)| (Felt { mode, load_mn, unloaded, lost }, slips))
 }
 
@@ -25,20 +24,19 @@ fn holds(mode: GripMode, load_mn: i32) -> Felt {
     Felt { mode, load_mn: Some(load_mn), ..Felt::default() }
 }
 
-/// The duties of so many slow frames in which the same is felt.
+/// Duties of so many slow frames of the same input.
 fn for_frames(feedback: &mut Feedback, frames: usize, felt: Felt) -> Vec<Duty> {
-    (0..frames).map(|_| feedback.step(2, &felt)).collect()
+    (0..frames).map(|_| feedback.step(STRONG, &felt)).collect()
 }
 
 fn bursts(duties: &[Duty]) -> usize {
-    let on = |n: usize| duties.get(n).is_some_and(|duty| *duty > OFF);
-    (0..duties.len()).filter(|&n| on(n) && (n == 0 || !on(n - 1))).count()
+    duties.chunk_by(|a, b| (*a > OFF) == (*b > OFF)).filter(|run| run[0] > OFF).count()
 }
 
 // Shows R11.
 proptest! {
     #[test]
-    fn it_runs_only_where_the_reflex_does_not_listen(
+    fn the_motor_runs_only_where_the_reflex_does_not_listen(
         choice in 0_u16..4,
         seen in prop::collection::vec(felt(), 1..400),
     ) {
@@ -65,7 +63,7 @@ proptest! {
     }
 
     #[test]
-    fn it_falls_silent_when_nothing_happens_any_more(
+    fn the_motor_falls_silent_when_nothing_happens(
         seen in prop::collection::vec(felt(), 0..100),
         (last, _) in felt(),
     ) {
@@ -74,7 +72,7 @@ proptest! {
             if slips {
                 feedback.slips();
             }
-            feedback.step(2, &felt);
+            feedback.step(STRONG, &felt);
         }
         let last = Felt { lost: false, ..last };
         // A warning that waits may come once more, 3 s after the one before.
@@ -104,7 +102,7 @@ fn each_doubling_of_the_force_is_one_burst_and_a_trembling_load_is_told_once() {
 }
 
 #[test]
-fn what_the_reflex_adds_is_told_by_its_slip_alone() {
+fn force_that_the_reflex_adds_is_told_by_its_slip_alone() {
     let mut feedback = Feedback::default();
     for_frames(&mut feedback, 20, holds(Wearer, 3_000));
     for_frames(&mut feedback, 20, holds(Watch, 3_000));
@@ -115,22 +113,23 @@ fn what_the_reflex_adds_is_told_by_its_slip_alone() {
     assert_eq!(duties[..BURST], [Duty::FULL; BURST]);
     assert!(duties[BURST..].iter().all(|duty| *duty == OFF));
     feedback.slips();
-    assert_eq!(bursts(&for_frames(&mut feedback, 9, holds(Slip, 5_000))), 0, "a third of a second later");
+    assert_eq!(bursts(&for_frames(&mut feedback, 9, holds(Slip, 5_000))), 0, "0.36 s after the first");
     for_frames(&mut feedback, 40, holds(Watch, 5_000));
     feedback.slips();
     assert_eq!(bursts(&for_frames(&mut feedback, 9, holds(Slip, 5_000))), 1);
 }
 
 #[test]
-fn a_loss_is_two_bursts_that_wait_until_the_films_are_not_asked() {
+fn a_loss_is_two_bursts_that_wait_until_the_reflex_does_not_listen() {
     let mut feedback = Feedback::default();
-    let lost = Felt { lost: true, ..holds(Watch, 500) };
-    assert_eq!(bursts(&for_frames(&mut feedback, 1, lost)), 0);
-    assert_eq!(bursts(&for_frames(&mut feedback, 1_000, holds(Watch, 500))), 0, "the reflex listens");
-    assert_eq!(bursts(&for_frames(&mut feedback, 1_000, holds(Wearer, 500))), 2);
-    assert_eq!(
-        bursts(&for_frames(&mut feedback, 1_000, Felt { lost: true, ..holds(Standby, 0) })),
-        10,
-        "each 3 s"
-    );
+    let lost = |felt| Felt { lost: true, ..felt };
+    for (frames, felt, expected) in [
+        (1, lost(holds(Watch, 500)), 0),
+        (1_000, holds(Watch, 500), 0),
+        (1_000, holds(Wearer, 500), 2),
+        // Each 3 s.
+        (1_000, lost(holds(Standby, 0)), 10),
+    ] {
+        assert_eq!(bursts(&for_frames(&mut feedback, frames, felt)), expected, "{felt:?}");
+    }
 }

@@ -1,5 +1,4 @@
-//! All tests of the logic in closed loops, one program: linking one for each file took longer than running most of them.
-//! `--test fingertip wearer` runs those of a file.
+//! All tests of the logic in closed loops, as one program. `--test fingertip wearer` runs those of a file.
 
 mod adversary;
 mod array;
@@ -7,14 +6,12 @@ mod behaviours;
 mod button;
 mod calibration;
 mod consent;
-mod detector;
 mod emg;
 mod feedback;
 mod hebbian;
 mod motor;
 mod myosensor_faults;
 mod no_wearer;
-mod random_steps;
 mod ranges;
 mod reflex;
 mod restart;
@@ -23,4 +20,5 @@ mod shear;
 mod sliding;
 mod store;
 mod touch;
+mod toy_detector;
 mod wearer;

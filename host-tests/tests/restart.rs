@@ -1,32 +1,24 @@
-//! Why the chip started: every reset in any order is told right, and counted where the hand brought it about.
+//! The cause of a start: named after resets in any order, and counted where the hand brought the reset about.
 
 use proptest::prelude::*;
 use tenax_hal_shim::wire::ResetCause;
 use tenax_hal_shim::words::Fault;
 use tenax_logic::restart::{Flags, Mark, RESTARTS_MAX, judge};
 
-const NONE: Flags = Flags { power_on: false, brown_out: false, watchdog: false, software: false, pin: true };
+const PIN: Flags = Flags { power_on: false, brown_out: false, watchdog: false, software: false, pin: true };
+const SOFTWARE: Flags = Flags { software: true, ..PIN };
+const BROWN_OUT: Flags = Flags { brown_out: true, ..PIN };
 
-/// Every reset by itself, as the manual says that its flags are, and what is to be told of it.
+/// Every reset alone, with the flags that the chip's manual states, its cause and the fault that is reported.
 const RESETS: [(Flags, Option<Mark>, ResetCause, Option<Fault>); 8] = [
-    (Flags { power_on: true, brown_out: true, ..NONE }, None, ResetCause::PowerOn, None),
-    (Flags { brown_out: true, ..NONE }, None, ResetCause::Other, Some(Fault::SupplySagged)),
-    (Flags { watchdog: true, ..NONE }, None, ResetCause::Watchdog, Some(Fault::WatchdogReset)),
-    (Flags { software: true, ..NONE }, Some(Mark::Panicked), ResetCause::Panic, Some(Fault::PanicReset)),
-    (
-        Flags { software: true, ..NONE },
-        Some(Mark::SupplySagged),
-        ResetCause::Software,
-        Some(Fault::SupplySagged),
-    ),
-    (
-        Flags { software: true, ..NONE },
-        Some(Mark::CrystalLost),
-        ResetCause::Software,
-        Some(Fault::CrystalLost),
-    ),
-    (Flags { software: true, ..NONE }, None, ResetCause::Software, None),
-    (NONE, None, ResetCause::Pin, None),
+    (Flags { power_on: true, ..BROWN_OUT }, None, ResetCause::PowerOn, None),
+    (BROWN_OUT, None, ResetCause::Other, Some(Fault::SupplySagged)),
+    (Flags { watchdog: true, ..PIN }, None, ResetCause::Watchdog, Some(Fault::WatchdogReset)),
+    (SOFTWARE, Some(Mark::Panicked), ResetCause::Panic, Some(Fault::PanicReset)),
+    (SOFTWARE, Some(Mark::SupplySagged), ResetCause::Software, Some(Fault::SupplySagged)),
+    (SOFTWARE, Some(Mark::CrystalLost), ResetCause::Software, Some(Fault::CrystalLost)),
+    (SOFTWARE, None, ResetCause::Software, None),
+    (PIN, None, ResetCause::Pin, None),
 ];
 
 proptest! {
@@ -34,7 +26,7 @@ proptest! {
 
     // Shows B2.
     #[test]
-    fn resets_in_any_order_are_told_and_counted_where_the_hand_brought_them_about(
+    fn resets_in_any_order_are_named_and_counted_where_the_hand_brought_them_about(
         row in prop::collection::vec(0..RESETS.len(), 1..40), stale in any::<u8>(),
     ) {
         let (mut kept, mut counted) = (u32::from(stale), u32::from(stale));
@@ -55,25 +47,24 @@ proptest! {
     }
 
     #[test]
-    fn flags_that_add_up_tell_the_reset_that_takes_most_away(all in prop::array::uniform5(any::<bool>())) {
+    fn of_several_flags_the_reset_that_erases_most_is_named(all in prop::array::uniform5(any::<bool>())) {
         let [power_on, brown_out, watchdog, software, pin] = all;
         let start = judge(Flags { power_on, brown_out, watchdog, software, pin }, None, 0);
         prop_assert_eq!(start.cause == ResetCause::PowerOn, power_on);
-        let sagged = start.after == Some(Fault::SupplySagged);
-        prop_assert_eq!(sagged, brown_out && !power_on);
+        prop_assert_eq!(start.after == Some(Fault::SupplySagged), brown_out && !power_on);
     }
 }
 
 #[test]
 fn a_mark_counts_only_after_a_reset_by_software() {
-    // RAM as it was at power-on may hold any word, and a pin's reset leaves what stood there.
-    assert_eq!(judge(NONE, Some(Mark::Panicked), 3).after, None);
+    // RAM at power-on may hold any word, and a pin's reset leaves an old one.
+    assert_eq!(judge(PIN, Some(Mark::Panicked), 3).after, None);
 }
 
 // Shows B2.
 #[test]
 fn a_hand_that_browns_out_at_each_closing_stays_off_and_one_without_a_clock_does_not() {
-    let again = |flags, mark| (0..20).fold(0, |kept, _| judge(flags, mark, kept).restarts);
-    assert!(again(Flags { brown_out: true, ..NONE }, None) > RESTARTS_MAX);
-    assert_eq!(again(Flags { software: true, ..NONE }, Some(Mark::CrystalLost)), 0, "the control");
+    let restarts = |flags, mark| (0..20).fold(0, |kept, _| judge(flags, mark, kept).restarts);
+    assert!(restarts(BROWN_OUT, None) > RESTARTS_MAX);
+    assert_eq!(restarts(SOFTWARE, Some(Mark::CrystalLost)), 0, "the control");
 }

@@ -1,15 +1,14 @@
-//! How many commands the board takes: enough for any tool, and too few to be late for or to crowd telemetry out.
+//! Token bucket for commands of the line: enough for any tool, too few to be late for or to crowd telemetry
+//! out.
 
 use tenax_hal_shim::wire::Down;
 
-/// Frames in which one command's worth is earned: 500 in a second. A camera sends 30, a held key 10.
+/// Frames that earn one command: 500 commands a second. A camera sends 30, a held key 10.
 const FRAMES_EACH: u32 = 4;
-/// Most commands in one burst.
 pub const BURST: u32 = 32;
 /// Cost, in commands, of one whose answer fills a quarter of a slow frame's time on the line.
 const LONG_ANSWER: u32 = 6;
 
-/// A token bucket for commands.
 #[derive(Clone, Copy, Debug)]
 pub struct Allowance {
     left: u32,
@@ -23,7 +22,6 @@ impl Default for Allowance {
 }
 
 impl Allowance {
-    /// Whether a message that came after the tick of `frame` is decoded at all. If not, it costs no CRC.
     pub fn admits(&mut self, frame: u32) -> bool {
         let earned = frame.wrapping_sub(self.earned_at) / FRAMES_EACH;
         self.earned_at = self.earned_at.wrapping_add(earned * FRAMES_EACH);
@@ -31,7 +29,6 @@ impl Allowance {
         self.spend(1)
     }
 
-    /// Whether this command, now that it is decoded, is taken.
     pub fn affords(&mut self, command: &Down) -> bool {
         !matches!(command, Down::Samples | Down::Network | Down::Settings(_) | Down::Last(_))
             || self.spend(LONG_ANSWER - 1)

@@ -3,23 +3,15 @@
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::words::DriveSource;
 
-/// What each source asks for in one tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Wishes {
-    /// A myosensor is active, its hold time included.
     pub wearer_active: bool,
-    /// What the muscles ask for.
     pub wearer: MotorDrive,
-    /// A drive command that still holds.
     pub link: Option<MotorDrive>,
-    /// What the reflex asks for.
     pub reflex: MotorDrive,
-    /// What a behaviour asks for: the only one besides the wearer and the line that may open.
     pub behaviour: MotorDrive,
 }
 
-/// The drive of this tick, and its source.
-#[must_use]
 pub const fn arbitrate(wishes: Wishes) -> (MotorDrive, DriveSource) {
     match wishes {
         // The wearer's open command always wins.
@@ -35,8 +27,7 @@ pub const fn arbitrate(wishes: Wishes) -> (MotorDrive, DriveSource) {
         {
             (close, DriveSource::Reflex)
         }
-        // Then a command that moves the hand. It opens nothing that the wearer holds, and one to coast asks for nothing: it
-        // does not silence the reflex.
+        // Then a command that moves the hand. One to coast does not silence the reflex.
         Wishes { link: Some(drive @ (MotorDrive::Open(_) | MotorDrive::Close(_))), .. } => {
             (drive, DriveSource::Link)
         }
@@ -66,7 +57,6 @@ mod tests {
     fn the_contract_over_every_combination() {
         let mut checked = 0;
         for wearer in wishes(1) {
-            // Slower and faster than the reflex.
             for link in [None].into_iter().chain([wishes(2), wishes(5)].concat().into_iter().map(Some)) {
                 for (reflex, behaviour) in
                     wishes(3).into_iter().flat_map(|reflex| wishes(4).map(|behaviour| (reflex, behaviour)))

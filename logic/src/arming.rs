@@ -1,46 +1,33 @@
-//! Arming: consent for commands of the serial line that move the hand or bear on its safety.
+//! Consent to commands that move the hand or bear on its safety. Reading is always free.
 //!
-//! Reading is always free. Everything else needs consent that only a person at the hand can give:
-//!
-//! | consent | how | lasts |
+//! | consent | act at the hand | duration |
 //! |---|---|---|
-//! | [`Consent::Muscles`] | both muscles active for 2 s (co-contraction) | 60 s |
-//! | [`Consent::Button`] | the blue button pressed | 60 s |
-//! | [`Consent::PowerUp`] | switched on with a finger that is known to hold nothing | until it holds something, 10 s at most |
+//! | [`Consent::Muscles`] | both muscles active for 2 s | 60 s |
+//! | [`Consent::Button`] | the button pressed | 60 s |
+//! | [`Consent::PowerUp`] | switched on with a finger that holds nothing | until it holds something, 10 s at most |
 //!
-//! Consent is an act, not a state: a humming electrode or a stuck button consents at most once. A *trusted* line
-//! (setting `line-trusted-flag`) needs none, for a gripper on a robot.
+//! Consent is an act, not a state: a humming electrode or a stuck button consents at most once.
 
-use tenax_hal_shim::channel::FRAME_HZ;
+use tenax_hal_shim::channel::{FRAME_HZ, frames};
 use tenax_hal_shim::words::{Consent, Line};
 
-use tenax_hal_shim::channel::frames;
-
-/// Frames from one step to the next, a fifth of a slow frame: every consent takes longer.
+/// Frames from one step to the next: a fifth of a slow frame.
 pub const STEP_FRAMES: u32 = 5;
-/// Duration of the consent by co-contraction or button, steps.
 const CONSENT_STEPS: u32 = frames(60_000) / STEP_FRAMES;
-/// Duration of a co-contraction that gives consent, steps.
 const CO_CONTRACTION_STEPS: u32 = frames(2_000) / STEP_FRAMES;
-/// Time for which the button must be up, then down, to count as pressed, frames: longer than its contacts bounce.
+/// Time for which the button must be up, then down, to count as pressed: longer than its contacts bounce.
 pub const DEBOUNCE_FRAMES: u32 = frames(20);
-/// [`DEBOUNCE_FRAMES`] in steps.
 pub const DEBOUNCE_STEPS: u32 = DEBOUNCE_FRAMES / STEP_FRAMES;
-/// Longest consent of a hand that was switched on empty, steps.
 const POWER_UP_STEPS: u32 = frames(10_000) / STEP_FRAMES;
 
-/// The signs of consent in a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Signs {
-    /// Both muscles are active.
     pub co_contraction: bool,
-    /// The button is down.
     pub button: bool,
-    /// Whether the finger is known to touch nothing; None while the force sensor gives no number.
+    /// None while the force sensor gives no number.
     pub unloaded: Option<bool>,
 }
 
-/// An input that has to be on for a while, after it was off, to count once.
 #[derive(Clone, Copy, Debug, Default)]
 struct Act {
     on: u32,
@@ -49,7 +36,6 @@ struct Act {
 }
 
 impl Act {
-    /// Advances by one step; true in the step that completes the act.
     fn tick(&mut self, on: bool, long: u32) -> bool {
         if !on {
             self.on = 0;
@@ -57,7 +43,7 @@ impl Act {
             self.done &= self.released < DEBOUNCE_STEPS;
             return false;
         }
-        // What is on from the start was never seen to be off: it is stuck.
+        // Stuck: on from the start, never seen to be off.
         self.done |= self.on == 0 && self.released < DEBOUNCE_STEPS;
         self.released = 0;
         self.on = self.on.saturating_add(1);
@@ -67,7 +53,6 @@ impl Act {
     }
 }
 
-/// Decides which commands of the serial line are allowed: tracks the acts of consent and how long each still lasts.
 #[derive(Clone, Debug)]
 pub struct Arming {
     left: u32,
@@ -78,7 +63,6 @@ pub struct Arming {
 }
 
 impl Default for Arming {
-    /// Just switched on.
     fn default() -> Self {
         Self {
             left: 0,
@@ -91,12 +75,10 @@ impl Default for Arming {
 }
 
 impl Arming {
-    /// This start was a reset, not a power-up: no consent follows from it.
     pub const fn was_reset(&mut self) {
         self.power_up_left = 0;
     }
 
-    /// Advances by one step of [`STEP_FRAMES`]. Some if consent was given in it.
     pub fn tick(&mut self, signs: Signs) -> Option<Consent> {
         self.left = self.left.saturating_sub(1);
         self.power_up_left = match signs.unloaded {
@@ -114,13 +96,10 @@ impl Arming {
         (self.power_up && !began).then_some(Consent::PowerUp)
     }
 
-    /// Whether consent by muscles or button is in force.
     pub const fn is_deliberate(&self) -> bool {
         self.left > 0
     }
 
-    /// The commands that the line may give. `trusted`: the setting `line-trusted-flag`.
-    #[must_use]
     pub fn line(&self, trusted: bool) -> Line {
         let left = if self.power_up { self.left.max(self.power_up_left) } else { self.left };
         match left.div_ceil(FRAME_HZ / STEP_FRAMES) {
@@ -146,14 +125,6 @@ mod tests {
 
     fn is_armed(arming: &Arming) -> bool {
         matches!(arming.line(false), Line::Armed { .. })
-    }
-
-    #[test]
-    fn nothing_that_nobody_did_arms() {
-        let mut arming = Arming::default();
-        assert_eq!(run(&mut arming, HOLDING, 100_000), []);
-        assert_eq!(arming.line(false), Line::Reading);
-        assert_eq!(arming.line(true), Line::Trusted);
     }
 
     #[test]

@@ -1,12 +1,6 @@
-//! Behaviours: movements on request of the line, in addition to the reflex (FingerVision 2017, section II).
-//!
-//! A behaviour asks in each tick to tighten or to relax the grasp. It never drives the motor itself: the reflex
-//! may tighten at any time, the wearer and the line come before both, and a request to relax has rules of its own
-//! ([`may_relax`]). Its input ([`Felt`]) comes from a camera behind the skin or from the
-//! finger's own sensors.
-//!
-//! A stroke, a hand-over and a part of a turn expect slip and answer it themselves ([`Running::answers_slip`]). Each of them
-//! ends by itself.
+//! Behaviours: movements on request of the line (FingerVision 2017, section II). A behaviour asks to tighten
+//! or to relax; wearer, line and reflex come before it. Stroke, hand-over and a part of a turn answer slip
+//! themselves ([`Running::answers_slip`]).
 
 mod felt;
 mod gentle_grasp;
@@ -31,34 +25,26 @@ use tenax_hal_shim::channel::frames;
 pub use self::settings::BehaviourConfig;
 pub use felt::{Felt, Skin};
 
-/// Request of a behaviour in one tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Wish {
-    /// Nothing.
     #[default]
     Rest,
-    /// To close.
     Tighten(Duty),
-    /// To open, if that is allowed.
     Relax(Duty),
 }
 
-/// Result of one tick of a behaviour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Course {
-    /// The behaviour goes on with this request.
     On(Wish),
-    /// The behaviour has ended, for this reason.
     Ends(Ending),
 }
 
-/// Longest duration of each behaviour, frames.
+/// Longest duration of each behaviour.
 const STROKE_FRAMES_MAX: u32 = frames(60_000);
 const GRASP_FRAMES_MAX: u32 = frames(20_000);
 const HAND_OVER_FRAMES_MAX: u32 = frames(20_000);
 const TURN_FRAMES_MAX: u32 = frames(60_000);
 
-/// The behaviour that is under way.
 #[derive(Clone, Debug)]
 pub struct Running {
     what: Behaviour,
@@ -76,7 +62,7 @@ enum Doing {
 }
 
 impl Running {
-    /// Begins a behaviour. None if a sensor or the camera that it needs is missing.
+    /// None if a sensor or the camera that it needs is missing.
     pub fn begin(what: Behaviour, felt: &Felt<'_>) -> Option<Self> {
         let doing = match what {
             Behaviour::Stroke if felt.grip == Grip::Unknown => return None,
@@ -89,12 +75,11 @@ impl Running {
         Some(Self { what, elapsed: 0, doing })
     }
 
-    /// The behaviour.
     pub const fn what(&self) -> Behaviour {
         self.what
     }
 
-    /// Whether the behaviour expects slip and answers it itself, so that the reflex must not.
+    /// Slip is expected and answered by the behaviour itself, so the reflex must not.
     pub const fn answers_slip(&self) -> bool {
         match &self.doing {
             Doing::Stroke | Doing::HandOver(_) => true,
@@ -103,8 +88,6 @@ impl Running {
         }
     }
 
-    /// Says that the reflex may be silent no longer. Returns whether the behaviour goes on: a turn does, until the grasp is as firm as at
-    /// its begin; any other ends.
     pub fn gives_reflex_back(&mut self) -> bool {
         match &mut self.doing {
             Doing::Turn(turn) => {
@@ -115,13 +98,11 @@ impl Running {
         }
     }
 
-    /// Advances by one tick.
     pub fn step(&mut self, config: &BehaviourConfig, felt: &Felt<'_>) -> Course {
         self.elapsed = self.elapsed.saturating_add(1);
         let (course, longest) = match &mut self.doing {
             Doing::Stroke => (Course::On(Wish::Rest), STROKE_FRAMES_MAX),
             Doing::GentleGrasp(grasp) => (grasp.step(config, felt), GRASP_FRAMES_MAX),
-            // Holding has no longest time: it lasts until another request.
             Doing::Hold(hold) => (hold.step(config, felt), u32::MAX),
             Doing::HandOver(hand_over) => (hand_over.step(config, felt), HAND_OVER_FRAMES_MAX),
             Doing::Turn(turn) => (turn.step(config, felt), TURN_FRAMES_MAX),
@@ -133,15 +114,11 @@ impl Running {
     }
 }
 
-/// Whether the behaviour may silence the reflex: see [`Running::answers_slip`].
-#[must_use]
 pub const fn may_answer_slip(what: Behaviour) -> bool {
     matches!(what, Behaviour::Stroke | Behaviour::HandOver | Behaviour::Turn { .. })
 }
 
-/// Whether a behaviour may relax the grasp in this tick: the line may still command, the load is
-/// known, and the reflex is not closing.
-#[must_use]
+/// The line may still command, the load is known, and the reflex is not closing.
 pub const fn may_relax(line: Line, grip: Grip, mode: GripMode) -> bool {
     let commands = matches!(line, Line::Armed { .. } | Line::Trusted);
     let known = !matches!(grip, Grip::Unknown);
@@ -149,8 +126,6 @@ pub const fn may_relax(line: Line, grip: Grip, mode: GripMode) -> bool {
 }
 
 impl Wish {
-    /// The drive that it asks for.
-    #[must_use]
     pub const fn drive(self) -> MotorDrive {
         match self {
             Self::Rest => MotorDrive::Coast,

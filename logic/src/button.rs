@@ -2,11 +2,11 @@
 //!
 //! | the finger | pressed | the hand |
 //! |---|---|---|
-//! | holds something, or is not known not to | for 1 to 3 s, and let go | [`Press::Release`]: opens slowly |
+//! | holds something, or may | for 1 to 3 s, and let go | [`Press::Release`]: opens slowly |
 //! | holds nothing | for 3 s | [`Press::Calibrate`]: asks for rest, closing and opening |
 //! | opens after a release, or is calibrating | again | [`Press::Stop`] |
 //!
-//! A release waits for the button to be let go: a button that is stuck or shorted opens nothing.
+//! A release waits for the button to be let go: a stuck or shorted button opens nothing.
 
 use tenax_hal_shim::channel::frames;
 
@@ -15,31 +15,22 @@ use crate::arming::{DEBOUNCE_STEPS, STEP_FRAMES};
 const RELEASE_STEPS: u32 = frames(1_000) / STEP_FRAMES;
 const CALIBRATE_STEPS: u32 = frames(3_000) / STEP_FRAMES;
 
-/// Request of a press.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Press {
-    /// Open a hand that holds.
     Release,
-    /// Calibrate the wearer's muscles.
     Calibrate,
-    /// Stop the release or calibration.
     Stop,
 }
 
-/// The button, from step to step.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Button {
-    /// Steps for which it is down, and up.
     down: u32,
     up: u32,
-    /// The button was up before it went down, and this press has made no request yet.
     fresh: bool,
     held: bool,
 }
 
 impl Button {
-    /// Advances by one step of [`STEP_FRAMES`](crate::arming::STEP_FRAMES). `empty`: the finger is known to hold nothing. `busy`: a
-    /// release or calibration is under way.
     pub fn tick(&mut self, is_down: bool, empty: bool, busy: bool) -> Option<Press> {
         if !is_down {
             self.up = self.up.saturating_add(1);
@@ -72,7 +63,6 @@ mod tests {
     use super::*;
     use std::vec::Vec;
 
-    /// What so many ms down, then 100 ms up, ask for, after 100 ms up.
     fn press(ms: u32, empty: bool, busy: bool) -> Vec<Press> {
         let mut button = Button::default();
         let steps = |ms: u32| frames(ms) / STEP_FRAMES;
@@ -101,15 +91,5 @@ mod tests {
         ] {
             assert_eq!(press(ms, empty, busy), Vec::from_iter(asks), "{ms} ms, {empty}, {busy}");
         }
-    }
-
-    // Shows W8.
-    #[test]
-    fn a_button_that_is_stuck_or_bounces_asks_for_nothing() {
-        let mut stuck = Button::default();
-        assert!((0..100_000).all(|_| stuck.tick(true, false, false).is_none()));
-        assert!((0..1_000).all(|_| stuck.tick(false, false, false).is_none()), "nor when it comes loose");
-        let mut bounces = Button::default();
-        assert!((0..100_000).all(|n| bounces.tick(n % 9 < 3, false, false).is_none()));
     }
 }

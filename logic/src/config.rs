@@ -16,34 +16,21 @@ use crate::photoelastic::HeadConfig;
 use crate::setting::{Row, SettingId, Settings, settings};
 use crate::vibration::settings::VibrationConfig;
 
-/// The configuration of one fingertip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Config {
-    /// S1's settings.
     pub vibration: VibrationConfig,
-    /// S2's settings.
     pub friction: FrictionConfig,
-    /// The Hebbian detector.
     pub hebbian: HebbianConfig,
-    /// The wearer's muscles.
     pub gate: GateConfig,
-    /// The reflex.
     pub grip: GripConfig,
-    /// The motor's limits.
     pub motor: MotorConfig,
-    /// The behaviours.
     pub behaviour: BehaviourConfig,
-    /// The photoelastic head.
     pub head: HeadConfig,
-    /// The serial line needs no consent.
     pub line_trusted: bool,
-    /// Frames are streamed from the start on.
     pub stream_at_start: bool,
-    /// There is no wearer: the reflex works without myosensors.
     pub no_wearer: bool,
-    /// Detectors that the reflex does not act on.
     pub detectors_off: DetectorSet,
-    /// Feedback to the wearer: 0 off, 1 discreet, 2 strong.
+    /// 0 off, 1 discreet, 2 strong.
     pub feedback: u16,
 }
 
@@ -56,12 +43,11 @@ settings! {
     /// 1: no wearer, the reflex works without myosensors (gripper on a robot). Setting it needs consent by muscles or button
     42 NoWearer "no-wearer-flag" "flag" [0, 1] = 0 => Flag(no_wearer);
     /// Detectors that the reflex does not act on, the sum of: 1 Hebbian, 2 MLP, 4 photoelastic, 8 S2, 16 S1
-    74 DetectorsOff "detectors-off-mask" "mask" [0, 7, trusted 0, 31] = 0 => Mask(detectors_off);
+    74 DetectorsOff "detectors-off-mask" "mask" [0, 31] = 0 => Mask(detectors_off);
     /// Vibration motor that signals force, slip and losses to the wearer: 0 off, 1 discreet, 2 strong
     78 Feedback "feedback-choice" "choice" [0, 2] = 0 => Number(feedback);
 }
 
-/// Every table of rows: a sense that joins adds its own here, and its part to what follows.
 const TABLES: [&[Row]; 9] = [
     VibrationConfig::ROWS,
     FrictionConfig::ROWS,
@@ -73,6 +59,9 @@ const TABLES: [&[Row]; 9] = [
     HeadConfig::ROWS,
     Config::ROWS,
 ];
+
+/// Largest S2 that a stroke may measure, per mille.
+const MEASURED_MAX_PERMILLE: i32 = 900;
 
 impl Default for Config {
     fn default() -> Self {
@@ -99,7 +88,6 @@ impl Default for Config {
 }
 
 impl Config {
-    /// Its parts that have settings, itself among them.
     fn parts(&self) -> [&dyn Settings; TABLES.len()] {
         [
             &self.vibration,
@@ -114,57 +102,26 @@ impl Config {
         ]
     }
 
-    /// A setting's value, in its unit.
-    #[must_use]
     pub fn get(&self, id: SettingId) -> i32 {
         self.parts().into_iter().find_map(|part| part.value(id)).unwrap_or_default()
     }
 
-    /// Changes a setting.
-    ///
-    /// # Errors
-    /// If the value is not accepted: the values that are. Then nothing has changed.
+    /// The accepted range, if the value is outside it.
     pub fn set(&mut self, id: SettingId, value: i32) -> Result<(), RangeInclusive<i32>> {
-        // A stroke may have measured a value outside the range; an exported file brings it back.
-        if value == self.get(id) {
-            return Ok(());
-        }
-        let range = id.row().range_in_force(self.line_trusted);
+        let range = id.row().range();
         if !range.contains(&value) {
             return Err(range);
         }
         self.put(id, value);
-        if id == SettingId::LineTrusted {
-            self.bound();
-        }
         Ok(())
     }
 
-    /// Sets S2 from a stroke, in a wider range than a person may set. False if no surface has such friction.
+    /// S2 from a stroke. False if no surface has such friction.
     pub(crate) fn measured(&mut self, s2_permille: i32) -> bool {
-        let trusted = SettingId::S2.row().range_in_force(true);
-        let most = if self.line_trusted { *trusted.end() } else { 900 };
-        let is_friction = (*trusted.start()..=most).contains(&s2_permille);
-        if is_friction {
-            self.put(SettingId::S2, s2_permille);
-        }
-        is_friction
+        s2_permille <= MEASURED_MAX_PERMILLE && self.set(SettingId::S2, s2_permille).is_ok()
     }
 
-    /// Limits every setting to the range in force, the narrower one unless the line is trusted.
-    fn bound(&mut self) {
-        for id in SettingId::ALL {
-            let (min, max) = id.row().range_in_force(self.line_trusted).into_inner();
-            let value = self.get(id);
-            // Not by `clamp`, which panics unless the compiler can see that `min` is not above `max`.
-            let within = value.max(min).min(max);
-            if value != within {
-                self.put(id, within);
-            }
-        }
-    }
-
-    /// Changes a setting to a value that is accepted: 0 to 2^24, which each field has room for.
+    /// `value`: 0 to 2^24, which each field has room for.
     pub(crate) fn put(&mut self, id: SettingId, value: i32) {
         self.vibration.put(id, value);
         self.friction.put(id, value);

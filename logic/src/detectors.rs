@@ -1,6 +1,5 @@
-//! The detectors: one trait, one static list, one record of what they report and which reports are believed.
-//!
-//! `docs/adding-a-detector.md` says what one more takes.
+//! The detectors: one trait, one static list, their last reports and which of them are believed.
+//! `docs/adding-a-detector.md` shows how to add one.
 
 mod injected;
 
@@ -10,7 +9,7 @@ use tenax_hal_shim::detector::{DetectorHealth, DetectorId, DetectorSet, Directio
 use tenax_hal_shim::schedule::{Job, slot_of};
 use tenax_hal_shim::wire::{DETECTORS_MAX, Forces};
 
-use crate::array::{MLP_DECIDES, MlpDetector, Reading};
+use crate::array::{MLP_DECIDES, Reading, ShippedDetector};
 use crate::config::Config;
 use crate::force::FrictionDetector;
 use crate::hebbian::HebbianDetector;
@@ -22,162 +21,96 @@ use crate::vibration::detector::S1;
 
 pub use injected::Injected;
 
-/// Conditioned signals of one frame: the input of every detector.
 #[derive(Clone, Copy, Debug)]
 pub struct Sensed<'a> {
-    /// Sequence number of the frame.
     pub frame: u32,
-    /// Slot of the frame in the slow frame, 0 to 24.
+    /// 0 to 24.
     pub slot: u8,
-    /// Whether the frame is valid. If not, it has no samples and only time has passed.
+    /// False: no samples; only time has passed.
     pub valid: bool,
-    /// The vibration of all PVDF channels.
     pub vibration: Vibration,
-    /// Each PVDF channel's envelope in the slip band, 14-bit samples in Q16: 65536 is one sample.
+    /// Envelopes in the slip band, Q16 samples (14 bits).
     pub envelopes: &'a [i32; PVDF_COUNT],
-    /// Whether any PVDF channel gives numbers.
     pub vibration_known: bool,
-    /// The strain gauges.
     pub strain: &'a Gauges,
-    /// Forces, None while the force sensor gives no number.
     pub forces: Option<&'a Forces>,
-    /// Whether this frame brought new forces.
     pub forces_are_new: bool,
-    /// The normal-force array's last readings.
     pub taxels: &'a Reading,
-    /// The photoelastic head; without readings while a film is in its place.
+    /// Without readings while a film is in its place.
     pub head: &'a Head,
-    /// The finger is known to touch nothing.
     pub unloaded: bool,
-    /// The finger holds something.
     pub grasp: bool,
-    /// The motor runs fast, or an impact rings: vibration does not come from the object.
     pub noisy: bool,
-    /// The reflex or the wearer moves the hand.
     pub moves: bool,
-    /// A muscle is active, its hold time included.
     pub wearer: bool,
 }
 
-/// A detector's report: the object slips, or is about to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Said {
-    /// The object slips.
     pub slip: bool,
-    /// The object is about to slip: a warning.
     pub incipient: bool,
 }
 
 impl Said {
-    /// Neither slip nor a warning.
     pub const NOTHING: Self = Self { slip: false, incipient: false };
 
-    /// Slip or not, without a warning.
     pub const fn slip(slip: bool) -> Self {
         Self { slip, incipient: false }
     }
 }
 
-/// The rest of a detector's evidence, computed once a slow frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Description {
-    /// Confidence that the object slips, 0 to 1000 per mille.
+    /// 0 to 1000 per mille.
     pub confidence_permille: u16,
-    /// The direction of slip.
     pub direction: Direction,
-    /// Whether the detector has the input that it needs.
     pub health: DetectorHealth,
-    /// The number that it compares with its threshold, on its own scale: see [`Evidence::raw`].
     pub raw: i32,
 }
 
-/// A detector. It owns its state; its configuration is passed in.
-///
-/// ```
-/// use tenax_hal_shim::detector::DetectorId;
-/// use tenax_logic::detectors::{Description, Detector, Said, Sensed};
-///
-/// /// Says slip while an impact rings.
-/// struct Toy;
-///
-/// impl Detector for Toy {
-///     // One that joins the list has a number of its own.
-///     const ID: DetectorId = DetectorId::Injected;
-///     type Config = ();
-///
-///     fn step(&mut self, _config: &(), sensed: &Sensed<'_>) -> Option<Said> {
-///         Some(Said::slip(sensed.vibration.impact))
-///     }
-///
-///     fn describe(&self, _config: &()) -> Description {
-///         Description::default()
-///     }
-/// }
-/// ```
 pub trait Detector {
-    /// The detector's identifier.
     const ID: DetectorId;
-    /// Largest number of consecutive slow frames in which it may report slip of an empty hand without being ignored.
+    /// Consecutive slow frames in which it may report slip of an empty hand without being ignored.
     const IMPLAUSIBLE_AFTER: u16 = 0;
-    /// Settings of the detector.
     type Config;
 
-    /// Takes one frame. None: no new conclusion, and the last report stands.
+    /// None: the last report stands.
     fn step(&mut self, config: &Self::Config, sensed: &Sensed<'_>) -> Option<Said>;
 
-    /// The rest of its evidence: confidence, direction, health, raw number.
     fn describe(&self, config: &Self::Config) -> Description;
 }
 
-/// The slot in which plausibility of all detectors but the MLP is judged.
 const OTHERS_GUARDED: u8 = slot_of(Job::Think) + 1;
 
-/// Runs a piece of code with each detector and its configuration: the static list of them.
 macro_rules! for_each_detector {
     ($self:ident, $config:expr, |$detector:ident, $own:ident| $body:expr) => {{
-        {
-            let ($detector, $own) = (&mut $self.s1, &$config.vibration);
-            $body;
-        }
-        {
-            let ($detector, $own) = (&mut $self.s2, &$config.friction);
-            $body;
-        }
-        {
-            let ($detector, $own) = (&mut $self.hebbian, &$config.hebbian);
-            $body;
-        }
-        {
-            let ($detector, $own) = (&mut $self.mlp, &());
-            $body;
-        }
-        {
-            let ($detector, $own) = (&mut $self.injected, &());
-            $body;
-        }
-        {
-            let ($detector, $own) = (&mut $self.photoelastic, &$config.head);
-            $body;
-        }
+        for_each_detector!(@ $detector, $own, $body;
+            $self.s1, $config.vibration;
+            $self.s2, $config.friction;
+            $self.hebbian, $config.hebbian;
+            $self.mlp, ();
+            $self.injected, ();
+            $self.photoelastic, $config.head)
     }};
+    (@ $detector:ident, $own:ident, $body:expr; $($each:expr, $settings:expr);+) => {
+        {$({
+            let ($detector, $own) = (&mut $each, &$settings);
+            $body;
+        })+}
+    };
 }
 
-/// All detectors and their reports.
 #[derive(Clone, Debug, Default)]
 pub struct Detectors {
     s1: S1,
-    /// S2; strokes measure its threshold.
     pub s2: FrictionDetector,
-    /// The Hebbian network, which a teacher teaches.
     pub hebbian: HebbianDetector,
-    mlp: MlpDetector,
-    /// Reports from outside.
+    mlp: ShippedDetector,
     pub injected: Injected,
     photoelastic: PhotoelasticDetector,
     record: Record,
 }
 
-/// Last report of each detector, its frame, and whether the guard ignores it.
 #[derive(Clone, Debug, Default)]
 struct Record {
     slip: DetectorSet,
@@ -185,7 +118,6 @@ struct Record {
     ignored: DetectorSet,
     decided_at: [u32; DetectorId::COUNT],
     guards: [Plausibility; DetectorId::COUNT],
-    /// Guard of the array's report while the hand moves or an impact rings.
     disturbance: Disturbance,
 }
 
@@ -207,20 +139,18 @@ impl Record {
     #[inline(always)]
     fn guard_array(&mut self, sensed: &Sensed<'_>) {
         let id = DetectorId::Mlp;
-        self.guard(id, MlpDetector::IMPLAUSIBLE_AFTER, sensed);
+        self.guard(id, ShippedDetector::IMPLAUSIBLE_AFTER, sensed);
         self.disturbance.step(sensed.vibration.impact, self.slip.contains(id));
         self.ignored = self.ignored.with(id, self.ignored.contains(id) || self.disturbance.explains_it());
     }
 }
 
-/// Whether at least two of these report slip: films, array, head, injected reports.
 fn by_two_senses(slip: DetectorSet) -> bool {
     let films = slip.contains(DetectorId::S1) || slip.contains(DetectorId::Hebbian);
     let others = [DetectorId::Mlp, DetectorId::Photoelastic, DetectorId::Injected];
     u8::from(films) + others.into_iter().map(|id| u8::from(slip.contains(id))).sum::<u8>() >= 2
 }
 
-/// The detector's number, from a reference to it.
 const fn id_of<D: Detector>(_: &D) -> DetectorId {
     D::ID
 }
@@ -230,15 +160,13 @@ const fn tolerance_of<D: Detector>(_: &D) -> u16 {
 }
 
 impl Detectors {
-    /// Takes one frame.
     pub fn step(&mut self, config: &Config, sensed: &Sensed<'_>) {
         for_each_detector!(self, config, |detector, own| {
             if let Some(said) = detector.step(own, sensed) {
                 self.record.note(id_of(detector), said, sensed.frame);
             }
         });
-        // The MLP decides once a cycle, and an implausible verdict is not believed for a single tick. The others are guarded in a
-        // slot with room.
+        // The MLP decides once a cycle, and an implausible verdict must not act for a single tick.
         match sensed.slot {
             MLP_DECIDES => self.record.guard_array(sensed),
             OTHERS_GUARDED => self.guard_others(config, sensed),
@@ -256,24 +184,20 @@ impl Detectors {
         });
     }
 
-    /// The reflex tightens because S2 warns: the array's next reports may come from that.
+    /// S2's warning is being answered: the array's next reports may come from the closing.
     #[inline(never)]
     pub const fn tightened(&mut self) {
         self.record.disturbance.begin();
     }
 
-    /// The detectors that say slip.
     pub const fn slip(&self) -> DetectorSet {
         self.record.slip
     }
 
-    /// The detectors that warn of slip.
     pub const fn incipient(&self) -> DetectorSet {
         self.record.incipient
     }
 
-    /// The detectors whose reports are believed: all but those that report slip of an empty hand; none where slip is unlikely and only
-    /// one kind of sensor reports it.
     pub fn credible(&self) -> DetectorSet {
         let Record { slip, ignored, .. } = self.record;
         if self.s2.is_slip_unlikely() && !by_two_senses(slip.without(ignored)) {
@@ -283,14 +207,12 @@ impl Detectors {
         }
     }
 
-    /// Each detector's last conclusion.
     #[must_use]
     #[inline(never)]
     pub fn evidence(&mut self, config: &Config) -> Vec<(DetectorId, Evidence), DETECTORS_MAX> {
         let mut all = Vec::new();
         for_each_detector!(self, config, |detector, own| {
             let id = id_of(detector);
-            // A head that is not there has no evidence.
             if id != DetectorId::Photoelastic || config.head.fitted {
                 let Description { confidence_permille, direction, health, raw } = detector.describe(own);
                 let evidence = Evidence {
@@ -302,7 +224,6 @@ impl Detectors {
                     health,
                     raw,
                 };
-                // There is room for every detector.
                 let _fits = all.push((id, evidence));
             }
         });
@@ -312,9 +233,9 @@ impl Detectors {
 
 const _: () = assert!(DetectorId::COUNT <= DETECTORS_MAX);
 
-/// How sure a threshold is: 500 per mille at it, 0 at nothing, 1000 at twice it.
+/// 500 per mille at the threshold, 0 at nothing, 1000 at twice it.
 pub(crate) fn confidence(value: i32, threshold: i32) -> u16 {
-    // Nothing is above 2^22, and 32 bits are divided by one instruction.
+    // Clamped, so that one 32-bit division is enough.
     let value = value.clamp(0, 1 << 22).unsigned_abs();
     let permille = value * 500 / threshold.max(1).unsigned_abs();
     permille.min(1_000) as u16

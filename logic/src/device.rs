@@ -1,17 +1,12 @@
-//! The fingertip as a device on a line: frames and commands in, drives, messages and records out.
-//!
-//! The flashed image, the host's board and the comparison of the two share it, so that answers to commands are
-//! decided in one place.
+//! The fingertip as a device on a line: frames and commands in, drives, messages and records out. Firmware
+//! and host share it.
 //!
 //! ```
 //! use tenax_hal_shim::frame::Frame;
 //! use tenax_hal_shim::motor::MotorDrive;
-//! use tenax_hal_shim::wire::{Answer, Down, Received, Up};
 //! use tenax_logic::device::Device;
 //!
 //! let mut device = Device::default();
-//! let Up::Answer { answer, .. } = device.command(&Received { sequence: 0, message: Down::Ping }) else { unreachable!() };
-//! assert_eq!(answer, Answer::Done);
 //! // Half a millisecond goes by; its samples were lost.
 //! assert_eq!(device.tick(&Frame::lost(0)), MotorDrive::Coast);
 //! while let Some(message) = device.next_message() {
@@ -37,7 +32,6 @@ use crate::store::keeper::Keeper;
 use crate::store::record::Record;
 use crate::stream::Stream;
 
-/// A fingertip with its session, command answers, records and outgoing messages.
 #[derive(Clone, Debug)]
 pub struct Device {
     fingertip: Fingertip,
@@ -55,7 +49,6 @@ impl Default for Device {
 }
 
 impl Device {
-    /// A device with this fingertip, which has not ticked yet.
     pub fn new(fingertip: Fingertip) -> Self {
         let keeper = fingertip.keeper();
         Self {
@@ -68,23 +61,20 @@ impl Device {
         }
     }
 
-    /// The fingertip.
     pub const fn fingertip(&self) -> &Fingertip {
         &self.fingertip
     }
 
-    /// The fingertip, for a caller that ticks and measures it: see [`tick`](Self::tick).
     pub const fn fingertip_mut(&mut self) -> &mut Fingertip {
         &mut self.fingertip
     }
 
-    /// Restores a saved record of this kind. Call it before the first tick.
     pub fn restore(&mut self, kept: Kept, payload: &[u8]) {
         self.fingertip.restore(kept, payload);
         self.keeper = self.fingertip.keeper();
     }
 
-    /// The message `About`, which follows the hello. Call it after all records are restored.
+    /// Call it after all records are restored.
     #[inline(never)]
     pub fn start(&mut self, identity: Identity) -> Up {
         self.identity = identity;
@@ -96,77 +86,67 @@ impl Device {
 
     #[inline(never)]
     fn about(&self) -> About {
-        // It has room for all of them. `collect` would panic if it had not, and nothing that a frame reaches may.
+        // Not `collect`, which could panic.
         let mut settings = Vec::new();
         let all = SettingId::ALL.into_iter().map(|id| self.setting(id));
         all.take_while(|setting| settings.push(*setting).is_ok()).for_each(drop);
         About { identity: self.identity, schema: SCHEMA, frames: self.stream.next(), settings }
     }
 
-    /// Reports a fault that was found outside the logic.
     pub fn report(&mut self, fault: Fault) {
         self.fingertip.report(fault);
     }
 
-    /// Sets whether the button at the hand is down, until the next call.
     pub const fn button(&mut self, is_down: bool) {
         self.fingertip.button(is_down);
     }
 
-    /// Sets whether the motor bridge reports that it has switched itself off, until the next call. Call it once a slow frame.
+    /// The motor bridge reports that it has switched itself off; until the next call.
     pub const fn bridge(&mut self, is_off: bool) {
         self.fingertip.bridge(is_off);
     }
 
-    /// Whether the light at the hand is on: it shows what a calibration asks for, and its result.
     pub fn light(&self) -> bool {
         self.fingertip.light()
     }
 
-    /// Duty of the vibration motor ([`feedback`](crate::feedback)). Call it once a slow frame.
     pub fn feedback(&mut self) -> Duty {
         self.fingertip.feedback()
     }
 
-    /// This start was a reset, not a power-up: no consent follows from it. Call it before the first tick.
+    /// The start was a reset, not a power-up: no consent follows from it. Call it before the first tick.
     pub const fn was_reset(&mut self) {
         self.fingertip.was_reset();
     }
 
-    /// Takes one frame and gives the motor's drive until the next, 0.5 ms later.
+    /// Drive of the motor until the next frame, 0.5 ms later.
     pub fn tick(&mut self, frame: &Frame) -> MotorDrive {
         let drive = self.fingertip.tick(frame);
         self.sampled(frame);
         drive
     }
 
-    /// Streams the frame's samples if asked, and does the work of a slow frame. Part of [`tick`](Self::tick).
+    /// Streaming, and the work of a slow frame, after the motor has been driven.
     pub fn sampled(&mut self, frame: &Frame) {
         self.samples.record(frame);
         self.stream.record(frame);
-        // After the motor has been driven, so that nothing waits for it.
+        // After the drive, so that the motor does not wait.
         if frame.slot() == slot_of(Job::Think) {
             self.fingertip.think(&self.samples);
         }
     }
 
-    /// Carries out a command, and gives the answer to it.
     pub fn command(&mut self, received: &Received<Down>) -> Up {
         let done = self.carry_out(received);
         self.answer(received, done)
     }
 
-    /// The message `Taken` of a command, to be sent before its answer, if frames are streamed.
-    #[must_use]
+    /// `Taken`, to be sent before the answer of a command while frames are streamed.
     pub fn taken(&self, received: &Received<Down>) -> Option<Up> {
         let Received { sequence: of, message: command } = *received;
         self.stream.is_raw().then_some(Up::Taken { before: self.stream.next(), of, command })
     }
 
-    /// Carries out a command. Part of [`command`](Self::command).
-    ///
-    /// # Errors
-    /// The reason why it was not carried out; nothing has changed then.
     pub fn carry_out(&mut self, received: &Received<Down>) -> Result<(), Refusal> {
         match received.message {
             Down::Open { nonce } => self.session.open(nonce, received.sequence)?,
@@ -179,7 +159,6 @@ impl Device {
         self.fingertip.command(&received.message)
     }
 
-    /// The answer to a command with this result. Part of [`command`](Self::command).
     pub fn answer(&mut self, received: &Received<Down>, done: Result<(), Refusal>) -> Up {
         let answer = match (done, received.message) {
             (Err(refusal), _) => Answer::Refused(refusal),
@@ -187,7 +166,6 @@ impl Device {
                 .map_or(Answer::Refused(Refusal::UnknownSetting), |id| Answer::Setting(self.setting(id))),
             (Ok(()), Down::Settings(from)) => {
                 let asked = SettingId::ALL.into_iter().filter(|id| id.number() >= from);
-                // As many as an answer has room for.
                 let mut settings = Vec::new();
                 asked
                     .map(|id| self.setting(id))
@@ -216,7 +194,6 @@ impl Device {
         Setting { id: id.number(), value: self.fingertip.config().get(id) }
     }
 
-    /// Whether a message waits to be sent.
     pub fn has_message(&self) -> bool {
         self.fingertip.has_slow()
             || self.stream.has_raw()
@@ -224,9 +201,9 @@ impl Device {
             || self.fingertip.has_event()
     }
 
-    /// Takes the oldest message that waits to be sent. Call it after every tick until it gives None.
+    /// Oldest message that waits. Call it after every tick until it gives None.
     pub fn next_message(&mut self) -> Option<Up> {
-        // Moving a slow frame that is not there would cost as much as moving one that is.
+        // Checked first: moving an absent slow frame costs as much as moving one.
         if self.fingertip.has_slow() {
             let slow = self.fingertip.take_slow()?;
             self.session.stir(slow.samples_sum ^ slow.frame);
@@ -245,12 +222,12 @@ impl Device {
         None
     }
 
-    /// The next record to save. Call it once a slow frame and save the result: each record is given once.
+    /// Each record is given once: call it once a slow frame and save the result.
     pub fn next_record(&mut self) -> Option<Record> {
         self.fingertip.next_record(&mut self.keeper)
     }
 
-    /// Advances the pauses between saves by a slow frame. Call it once in each.
+    /// Call it once a slow frame: it advances the pauses between saves.
     pub fn slow_frame_passed(&mut self) {
         self.keeper.pass(FRAMES_PER_SLOW_FRAME.into());
     }

@@ -1,7 +1,6 @@
-//! The whole fingertip: a frame goes in, a motor drive comes out.
-//!
-//! In each tick the senses take the frame, the state machine (Prosthesis, figure 9) asks in the paper's order (first
-//! the wearer, then S1, then S2), and the arbiter chooses the source that drives the motor.
+//! The whole fingertip: a frame in, a motor drive out. In each tick the senses take the frame, the state
+//! machine asks the wearer, then the detectors (Prosthesis, figure 9), and the arbiter chooses the source
+//! that drives the motor.
 
 mod behave;
 mod commands;
@@ -19,7 +18,7 @@ use tenax_hal_shim::words::{CalibrationRefusal, Cause, DriveSource, Fault, GripM
 
 use self::behave::Eye;
 use self::link::Link;
-use self::verdicts::{Acting, Verdicts};
+use self::verdicts::Verdicts;
 use crate::arbiter::{Wishes, arbitrate};
 use crate::arming::{Arming, STEP_FRAMES};
 use crate::behaviours::Running;
@@ -37,29 +36,26 @@ use crate::store::keeper::{Keeper, Now};
 use crate::store::payload;
 use crate::store::record::Record;
 
-/// Slot of each step in which consent is checked: the array's heaviest share is in another.
+/// Slot, modulo the step, in which consent is checked: the array's heaviest share is in another.
 const CONSENT_SLOT: u32 = 0;
-/// The slot, one of these and after the forces', in which the missing force is computed; `think` has no time left for it.
+/// Slot, after the forces', in which the missing force is computed; `think` has no time left for it.
 const FEEL_SLOT: u8 = 20;
 const _: () = assert!(FEEL_SLOT > slot_of(Job::Forces) && FEEL_SLOT as u32 % STEP_FRAMES == CONSENT_SLOT);
 
-/// Another one, in which the motor's limits are judged. Neither the array nor the forces have work in it.
+/// Slot in which the motor's limits are judged: neither the array nor the forces have work in it.
 const MOTOR_SLOT: u8 = 5;
 const _: () =
     assert!(MOTOR_SLOT as u32 % STEP_FRAMES == CONSENT_SLOT && MOTOR_SLOT < slot_of(Job::ArrayBegins));
 
-/// State of one fingertip: configuration, senses, detectors, reflex and journal.
 #[derive(Clone, Debug, Default)]
 pub struct Fingertip {
     config: Config,
-    /// Counts changes of the settings, so that they need not be compared.
     settings_changed: u32,
-    /// Calibrations of the myosensors since the start.
     calibrated: u32,
     senses: Senses,
     detectors: Detectors,
-    /// Detectors that the reflex may act on.
-    acting: Acting,
+    /// Detectors that the reflex does not act on, beside those of `detectors-off-mask`.
+    muted: DetectorSet,
     mode: GripMode,
     reflex: Reflex,
     behaviour: Option<Running>,
@@ -68,37 +64,33 @@ pub struct Fingertip {
     arming: Arming,
     button_is_down: bool,
     button: Button,
-    /// State of the line and of `no_wearer` that was reported last.
     line: Line,
     told_no_wearer: bool,
     journal: Journal,
     feedback: Feedback,
     slow: Option<Slow>,
     save_asked: bool,
-    /// Drive that the arbiter chose in the last tick, and the drive after the motor's limit.
     asked: MotorDrive,
     drive: MotorDrive,
-    /// Whether the reflex has released force since the drive was last read.
+    /// The reflex has released force since the drive was last read.
     took_back: bool,
 }
 
 impl Fingertip {
-    /// A fingertip with these thresholds and limits.
     pub fn new(config: Config) -> Self {
         Self { config, ..Self::default() }
     }
 
-    /// A fingertip whose line needs no consent: for a gripper or a bench.
     pub fn trusting() -> Self {
         Self::new(Config { line_trusted: true, ..Config::default() })
     }
 
-    /// Restores a saved record of this kind. Call it before the first tick. A record that cannot be used is reported as a
-    /// fault, and the defaults stay.
+    /// Call it before the first tick. A record that cannot be used is reported as a fault, and the defaults
+    /// stay.
     #[inline(never)]
     pub fn restore(&mut self, kept: Kept, payload: &[u8]) {
         let restored = match kept {
-            Kept::Network => self.detectors.hebbian.restore(payload).is_ok(),
+            Kept::Network => self.detectors.hebbian.restore(payload),
             Kept::Zero => {
                 let zero_uv = payload::zero(payload);
                 zero_uv.map(|zero_uv| self.senses.force_sensor_mut().restore_zero(zero_uv)).is_some()
@@ -114,12 +106,11 @@ impl Fingertip {
         }
     }
 
-    /// A keeper that decides when changes are saved. The present state counts as saved.
     pub fn keeper(&self) -> Keeper {
         Keeper::new(&self.now())
     }
 
-    /// The next record to save, None if there is none. Call it regularly and save the result: each record is given once.
+    /// Each record is given once: call it regularly and save the result.
     #[inline(never)]
     pub fn next_record(&mut self, keeper: &mut Keeper) -> Option<Record> {
         let now = self.now();
@@ -134,7 +125,6 @@ impl Fingertip {
         })
     }
 
-    /// The state that the keeper compares.
     fn now(&self) -> Now {
         Now {
             settings_changed: self.settings_changed,
@@ -146,20 +136,18 @@ impl Fingertip {
         }
     }
 
-    /// Reports a fault that was found outside the logic.
     pub fn report(&mut self, fault: Fault) {
         self.journal.fault(fault);
     }
 
-    /// Takes one frame and gives the motor's drive until the next, 0.5 ms later.
-    ///
-    /// Every frame must be passed, lost ones too ([`Frame::lost`]), since time is counted in frames.
+    /// Drive of the motor until the next frame, 0.5 ms later. Every frame must be passed, lost ones too
+    /// ([`Frame::lost`]), since time is counted in frames.
     pub fn tick(&mut self, frame: &Frame) -> MotorDrive {
         self.sense(frame);
         self.act(frame)
     }
 
-    /// Computes once a slow frame what takes too long for a tick, from the last samples too. Call it always after the same tick.
+    /// Work of a slow frame that takes too long for a tick. Call it always after the same tick.
     pub fn think(&mut self, samples: &LastSamples) {
         self.senses.think(&self.config, samples, &mut self.journal);
         if self.senses.muscles_mut().think(&mut self.journal) {
@@ -167,7 +155,6 @@ impl Fingertip {
         }
     }
 
-    /// Gives the reflex the load and the missing force, for the present or the next pulse.
     fn feel(&mut self) {
         let held = self.senses.forces.filter(|_| matches!(self.senses.grip, Grip::Holds(_)));
         let slides = self.reflex.slides(self.mode);
@@ -179,7 +166,6 @@ impl Fingertip {
         self.reflex.relax(self.mode, reading.filter(|_| self.may_relax()).as_ref());
     }
 
-    /// Whether the reflex may release force that it added: `relax-choice` allows it, and no other source moves the hand.
     fn may_relax(&self) -> bool {
         self.config.grip.may_relax(self.config.no_wearer)
             && self.senses.all_ready(&self.config)
@@ -188,17 +174,14 @@ impl Fingertip {
             && self.behaviour.is_none()
     }
 
-    /// Sets the report of the detector `injected`, from the next frame on.
     pub const fn inject(&mut self, said: Said) {
         self.detectors.injected.inject(said);
     }
 
-    /// Restricts the reflex to these detectors from now on: for a scene's controls and its bound.
     pub const fn act_on(&mut self, detectors: DetectorSet) {
-        self.acting = Acting(detectors);
+        self.muted = DetectorSet::ALL.without(detectors);
     }
 
-    /// Whether no source moves the hand and no lesson is on.
     fn is_at_rest(&self) -> bool {
         let listening = matches!(self.mode, GripMode::Standby | GripMode::Watch);
         listening
@@ -235,7 +218,6 @@ impl Fingertip {
             if frame.slot() == FEEL_SLOT {
                 self.feel();
             }
-            // The drive of the last frames, before this one drives.
             let striking = matches!(self.mode, GripMode::Slip | GripMode::Settle);
             // A hand that stalls while opening is at its stop, so the request counts.
             let did = if self.asked.opens() { self.asked } else { self.drive };
@@ -245,8 +227,7 @@ impl Fingertip {
                 self.senses.motor.judge(&self.config.motor, &mut self.journal);
             }
         }
-        let acting = self.acting.but(self.config.detectors_off);
-        let verdicts = Verdicts::of(&self.detectors, acting);
+        let verdicts = Verdicts::of(&self.detectors, self.muted.or(self.config.detectors_off));
         if !verdicts.said.is_empty() {
             self.reflex.hear();
         }
@@ -309,7 +290,7 @@ impl Fingertip {
         drive
     }
 
-    /// Steps the flow chart of Prosthesis, figure 9, from its top.
+    /// Flow chart of Prosthesis, figure 9, from its top.
     fn step_mode(&mut self, verdicts: Verdicts, grip: Grip) {
         let config = self.config.grip;
         let answered = self.behaviour.as_ref().is_some_and(Running::answers_slip);
@@ -339,7 +320,6 @@ impl Fingertip {
         }
     }
 
-    /// Reports why a pulse begins: margin, detectors that report, detectors that are believed.
     #[inline(never)]
     fn explain(&mut self, Verdicts { said, believed, .. }: Verdicts) {
         let s2_permille = self.detectors.s2.s2_permille(&self.config.friction);
@@ -347,7 +327,6 @@ impl Fingertip {
         self.journal.event(EventKind::Pulse { margin_mn, said, believed });
     }
 
-    /// Changes the mode if the table has a step for this cause; mostly it has none.
     #[inline]
     fn cause(&mut self, cause: Cause) {
         if let Some(to) = mode::next(self.mode, cause) {
@@ -369,7 +348,6 @@ impl Fingertip {
         self.journal.mode(from, to, cause);
     }
 
-    /// Ends a stroke, by command or because another source took over: sets S2 from it, if the value is allowed.
     #[inline(never)]
     fn measured(&mut self) {
         let Some(measured) = self.detectors.s2.end_stroke(&self.config.friction) else {

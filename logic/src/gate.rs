@@ -1,9 +1,6 @@
-//! The myoelectric gate: the wearer's drive, and whether a muscle is active (Prosthesis, section 5: "the sensor
-//! system should be activated only in case the myosensors are not active").
-//!
-//! [`emg`](crate::emg) turns the two envelopes into a wish. The gate turns the wish into a motor drive and holds activity for
-//! a while, so that the reflex stays silent between two contractions. An unproven wish moves a hand that may hold
-//! something slowly and by little, so that a fault of an electrode drops nothing.
+//! The myoelectric gate: the wearer's drive, and whether a muscle is active, held for a while so that the
+//! reflex stays silent between two contractions (Prosthesis, section 5). An unproven wish moves a hand that
+//! may hold something slowly and by little, so that a fault of an electrode drops nothing.
 
 use tenax_hal_shim::motor::{Duty, MotorDrive};
 
@@ -11,18 +8,16 @@ use crate::emg::Verdict;
 use crate::emg::decide::Wish;
 use crate::emg::settings::GateConfig;
 
-/// Travel of an unproven opening at most, frames times per mille of duty: 0.7 mm with a gripper of 120 mm/s.
+/// Largest travel of an unproven opening, frames times per mille of duty: 0.7 mm with a gripper of 120 mm/s.
 const OPENS_AT_MOST: u32 = 11_600;
-/// Frames of an unproven closing at most: 92 ms.
+/// Longest unproven closing, frames: 92 ms.
 const CLOSES_AT_MOST: u32 = 184;
-/// Frames for which a release opens at most, 4 s: the whole range at the slowest duty. And after nothing is felt any more.
+/// Longest opening of a release, frames: 4 s, the whole range at the slowest duty; and once nothing is felt.
 const RELEASE_FRAMES: u32 = 8_000;
 const RELEASED_FRAMES: u32 = 1_000;
 /// Frames of known rest that renew both limits: 4 s.
 const RENEWED_AFTER: u32 = 8_000;
 
-/// The myoelectric gate: turns the muscles' verdict into the wearer's drive, holds activity for a while, and limits
-/// unproven wishes.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Gate {
     verdict: Verdict,
@@ -30,48 +25,40 @@ pub struct Gate {
     hold: u32,
     known_frames: u32,
     half_known_frames: u32,
-    /// Frames of known rest in a row.
     rest_frames: u32,
     /// Travel of unproven openings and frames of unproven closings since the limits were renewed.
     opened: u32,
     closed: u32,
-    /// The finger touches nothing.
     empty: bool,
-    /// Frames left of a release.
     release: u32,
 }
 
 impl Gate {
-    /// Takes the muscles' verdict, which holds until the next.
     pub const fn take(&mut self, verdict: Verdict) {
         self.verdict = verdict;
     }
 
-    /// Takes a muscle's envelope above rest, mV, None if the sensor gives no number. Muscle 0 is the flexor, others the
-    /// extensor. For telemetry only.
+    /// Envelope above rest, mV, for telemetry. Muscle 0 is the flexor, others the extensor.
     pub const fn show(&mut self, muscle: usize, mv: Option<i16>) {
         self.mv[if muscle == 0 { 0 } else { 1 }] = mv;
     }
 
-    /// Begins (or ends) a release by the button: the hand opens slowly, whatever the sensors say, until nothing is felt or a
-    /// muscle closes it.
+    /// The hand opens slowly, whatever the sensors say, until nothing is felt or a muscle closes it.
     pub const fn release(&mut self, on: bool) {
         self.release = if on { RELEASE_FRAMES } else { 0 };
     }
 
-    /// Advances a release by so many frames.
     pub fn step_release(&mut self, frames: u32) {
         let most = if self.empty { RELEASED_FRAMES } else { RELEASE_FRAMES };
         let closes = matches!(self.verdict, Verdict { wish: Wish::Close, proven: true, .. });
         self.release = if closes { 0 } else { self.release.saturating_sub(frames).min(most) };
     }
 
-    /// Whether a release is under way.
     pub const fn is_releasing(&self) -> bool {
         self.release > 0
     }
 
-    /// Advances by one frame. `empty`: the finger is known to touch nothing.
+    /// `empty`: the finger is known to touch nothing.
     pub fn tick(&mut self, config: &GateConfig, empty: bool) {
         if self.verdict.active || self.release > 0 {
             self.hold = config.hold_frames;
@@ -94,52 +81,45 @@ impl Gate {
         }
     }
 
-    /// Whether the wish is carried out in full: it is proven, or the hand is empty.
     const fn is_trusted(&self) -> bool {
         self.verdict.proven || self.empty
     }
 
-    /// Whether a muscle is active or was within the hold time. Call after [`tick`](Self::tick).
+    /// Active, or within the hold time. Call it after [`tick`](Self::tick).
     pub const fn is_active(&self) -> bool {
         self.hold > 0
     }
 
-    /// Whether both myosensors are healthy, so that "not active" is known.
+    /// Both myosensors are healthy, so that "not active" is known.
     pub const fn is_known(&self) -> bool {
         self.verdict.known
     }
 
-    /// Whether both myosensors have been healthy for the hold time, so that no earlier activity can have been missed.
-    #[must_use]
+    /// Healthy for the hold time, so that no earlier activity can have been missed.
     pub const fn is_certain(&self, config: &GateConfig) -> bool {
         self.known_frames >= config.hold_frames
     }
 
-    /// Like [`is_certain`](Self::is_certain), for one healthy myosensor beside a lost one that cannot be an active muscle.
-    #[must_use]
+    /// One healthy myosensor beside a lost one that cannot be an active muscle, for the hold time.
     pub const fn is_half_certain(&self, config: &GateConfig) -> bool {
         self.half_known_frames >= config.hold_frames
     }
 
-    /// The flexor's envelope above rest, mV. None: the sensor gives no number.
     pub const fn flexor_mv(&self) -> Option<i16> {
         self.mv[0]
     }
 
-    /// The extensor's envelope above rest, mV. None: the sensor gives no number.
     pub const fn extensor_mv(&self) -> Option<i16> {
         self.mv[1]
     }
 
-    /// Whether both muscles are above `emg-on-mv`, whatever they ask for.
-    #[must_use]
+    /// Both muscles above `emg-on-mv`, whatever they ask for.
     pub fn is_co_contracted(&self, config: &GateConfig) -> bool {
         self.is_known()
             && self.mv.iter().all(|mv| mv.is_some_and(|mv| i32::from(mv) >= i32::from(config.on_mv)))
     }
 
-    /// The wearer's drive: faster for a stronger contraction; an unproven opening at the slowest duty.
-    #[must_use]
+    /// Faster for a stronger contraction; an unproven opening at the slowest duty.
     pub fn wish(&self, config: &GateConfig) -> MotorDrive {
         let trusted = self.is_trusted();
         match self.verdict.wish {
@@ -154,8 +134,8 @@ impl Gate {
     }
 }
 
-/// Duty of a contraction: the slowest at the weakest wish, full at the strongest. The strength is a difference of
-/// logarithms; its square is about proportional to the envelope over a decade, so a light contraction is slow.
+/// Slowest at the weakest wish, full at the strongest. Strength is a difference of logarithms; its square is
+/// about proportional to the envelope over a decade.
 fn duty(config: &GateConfig, strength_permille: u16) -> Duty {
     let slowest = u32::from(config.slowest_permille.min(1_000));
     let strength = u32::from(strength_permille.min(1_000));
@@ -201,16 +181,6 @@ mod tests {
         }
         gate.tick(&CONFIG, false);
         assert!(!gate.is_active());
-    }
-
-    #[test]
-    fn what_is_known_is_certain_after_the_hold_time() {
-        let mut gate = says(Wish::Rest, 0);
-        (1..400).for_each(|_| gate.tick(&CONFIG, false));
-        assert!(gate.is_certain(&CONFIG));
-        gate.take(Verdict::default());
-        gate.tick(&CONFIG, false);
-        assert!(!gate.is_certain(&CONFIG) && !gate.is_known());
     }
 
     #[test]
@@ -273,7 +243,6 @@ mod tests {
             }
             frames
         };
-        // In an empty hand the first step leaves what is left then.
         assert_eq!((lasts(false), lasts(true)), (RELEASE_FRAMES, RELEASED_FRAMES + 1));
         assert_eq!(gate.wish(&CONFIG), MotorDrive::Coast);
 
@@ -302,7 +271,6 @@ mod tests {
             });
             all.filter(|drive| *drive != MotorDrive::Coast).count() as u32
         };
-        // Each tick counts what it is about to drive.
         assert_eq!(frames(Wish::Open, false), OPENS_AT_MOST / 400 - 1);
         assert_eq!(frames(Wish::Close, false), CLOSES_AT_MOST - 1);
         assert_eq!(frames(Wish::Close, true), 2 * RENEWED_AFTER, "nothing to crush");

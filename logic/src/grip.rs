@@ -1,13 +1,10 @@
-//! The grip reflex: how much to close, once slip or incipient slip is known.
+//! The grip reflex: how much to close on slip or incipient slip.
 //!
-//! A pulse ends when the missing force ([`Lacks`]) is there: by the measured force, plus the motor's travel that the force does not show yet
-//! times the stiffness that closing has shown ([`Stiffness`]). Each reading updates the missing force. Where it is unknown, a pulse has the
-//! set length; a pulse against slip, at full speed, never lasts longer than the set maximum, and a warning's is slower. After a pulse
-//! against slip the object settles for longer than the motor's dead time before detectors count again. Pulses grow while slip continues,
-//! since force or stiffness may be wrong. Warnings are ignored once pulses have raised no force.
-//!
-//! No pulse begins on a finger that is known to hold nothing or to press at the force ceiling; while the force is unknown,
-//! all pulses share a small budget that only the wearer can renew.
+//! A pulse ends when the missing force ([`Lacks`]) is there: by the measured force plus the travel that it
+//! does not show yet times the stiffness ([`Stiffness`]). Where that is unknown, a pulse has the set length.
+//! After a pulse against slip the object settles for longer than the motor's dead time. No pulse begins on a
+//! finger that holds nothing or is at the force ceiling; while the force is unknown, all pulses share a small
+//! budget that only the wearer can renew.
 
 pub mod lacks;
 pub mod relax;
@@ -23,46 +20,43 @@ use self::relax::Relax;
 use self::settings::GripConfig;
 use self::stiffness::Stiffness;
 
-/// The load of the finger, as the reflex knows it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Grip {
-    /// The force sensor gives no number.
     #[default]
     Unknown,
-    /// The load is below `loaded-mn`: the finger holds nothing.
     Unloaded,
-    /// The finger holds something with this load, mN.
+    /// mN.
     Holds(i32),
 }
 
-/// A pulse has raised the force if the load changed by more than this part of it: beyond the force sensor's noise.
+/// Part of the load by which a pulse has to change it: beyond the force sensor's noise.
 const RAISES_PART: i32 = 200;
-/// Pulses in a row that raised nothing, after which no warning is answered until the load changes or a muscle was active.
+/// Pulses in a row without effect, after which no warning is answered until the load changes or a muscle was
+/// active.
 const IN_VAIN_MAX: u16 = 8;
 
-/// The shortest pulse, frames: 3 ms.
+/// Shortest pulse: 3 ms.
 const LEAST_FRAMES: u32 = 6;
-/// Slip that is reported again within this continues, frames: its pulse is at least twice as long as the one before, up to 48 ms.
+/// Slip that is reported again within this continues: its pulse is at least twice as long as the one before,
+/// up to 48 ms.
 const AT_ONCE_FRAMES: u32 = 60;
 const ROW_MAX: u8 = 5;
-/// Time after a report of slip until Ft/Fn is the sliding friction, in frames: two readings.
+/// Time after a report of slip until Ft/Fn is the sliding friction: two readings.
 const SHOWS_FRAMES: u32 = frames(25);
 
-/// State of the reflex.
 #[derive(Clone, Copy, Debug)]
 pub struct Reflex {
     elapsed: u32,
     /// Frames since the last pulse that answered incipient slip, saturating.
     since_incipient: u32,
     blind: u32,
-    /// Whether closing spends the budget though the force is known.
+    /// Closing spends the budget though the force is known.
     bound: bool,
-    /// The load as the last pulse began, mN, and the pulses in a row that raised nothing.
+    /// Load as the last pulse began, mN, and the pulses in a row that raised nothing.
     began_mn: Option<i32>,
     in_vain: u16,
     stiffness: Stiffness,
     relax: Relax,
-    /// The force that the grip lacked by the last reading.
     lacks: Lacks,
     /// Travel left of the pulse, per mille of duty times frames. None: the pulse has the set length.
     left: Option<u32>,
@@ -89,8 +83,7 @@ impl Default for Reflex {
 }
 
 impl Reflex {
-    /// Whether a pulse may begin or go on: the finger holds something below the force ceiling, and blind budget is left if it is needed.
-    #[must_use]
+    /// Something is held below the force ceiling, and blind budget is left if it is needed.
     pub const fn may_close(&self, config: &GripConfig, grip: Grip) -> bool {
         match grip {
             Grip::Unknown => self.has_budget(config),
@@ -103,13 +96,13 @@ impl Reflex {
         self.blind < config.blind_frames
     }
 
-    /// Sets whether closing spends the blind budget even if the force is known: an electrode is lost, and a muscle might be missed.
+    /// An electrode is lost, and a muscle might be missed: closing spends the blind budget even if the force
+    /// is known.
     pub const fn bind(&mut self, bound: bool) {
         self.bound = bound;
     }
 
-    /// Whether a drive command of the line may close: below the force ceiling, or with blind budget left if the force is unknown.
-    #[must_use]
+    /// Below the force ceiling, or with blind budget left if the force is unknown.
     pub const fn link_may_close(&self, config: &GripConfig, grip: Grip) -> bool {
         match grip {
             Grip::Unknown => self.has_budget(config),
@@ -118,9 +111,7 @@ impl Reflex {
         }
     }
 
-    /// Handles a change of mode: restarts the time in the mode ([`elapsed`](Self::elapsed)), counts the pulses in a
-    /// row, and plans the length of the new mode's pulse from the missing force. `grip` is the present load. Call it
-    /// once at a change.
+    /// Call it once at each change of mode.
     #[inline(never)]
     pub fn enter(&mut self, mode: GripMode, grip: Grip) {
         match mode {
@@ -139,25 +130,21 @@ impl Reflex {
         self.size(mode);
     }
 
-    /// Whether the load differs from that at the last pulse's begin.
     fn has_changed(&self, load_mn: i32) -> bool {
         self.began_mn.is_none_or(|began| (load_mn - began).abs() > began / RAISES_PART)
     }
 
-    /// Takes the load, mN (None: unknown, or nothing is held), and the missing force. Call it once a slow frame.
+    /// Call it once a slow frame. `load_mn` None: unknown, or nothing is held.
     #[inline(never)]
     pub fn feel(&mut self, mode: GripMode, load_mn: Option<i32>, lacks: Lacks) {
         self.stiffness.feel(load_mn);
         if load_mn.is_none() {
-            // Another grasp begins.
             (self.began_mn, self.in_vain) = (None, 0);
         }
         self.lacks = lacks;
         self.size(mode);
     }
 
-    /// Whether the present Ft/Fn is the sliding friction.
-    #[must_use]
     pub const fn slides(&self, mode: GripMode) -> Slides {
         match mode {
             GripMode::Slip if self.row > 1 => Slides::Again,
@@ -168,7 +155,6 @@ impl Reflex {
         }
     }
 
-    /// Sizes the pulse by the missing force and the stiffness.
     #[inline(never)]
     fn size(&mut self, mode: GripMode) {
         let lacks_mn = match mode {
@@ -181,7 +167,7 @@ impl Reflex {
         self.left = lacks_mn.and_then(|lacks_mn| self.stiffness.travel_for(lacks_mn.min(most_mn)));
     }
 
-    /// Notes that the motor closes in this frame. Only what the reflex closed may be released later.
+    /// Call it in each frame in which the motor closes. Only what the reflex closed may be released later.
     pub fn closes(&mut self, duty: Duty, by_reflex: bool) {
         self.stiffness.close(duty.as_per_mille());
         if by_reflex {
@@ -194,8 +180,8 @@ impl Reflex {
         }
     }
 
-    /// Releases force that the reflex added, with a reading (`held`) in mode `Watch`; in other modes waits. Without a reading the amount is
-    /// forgotten: another source moves the hand, or it holds nothing. Call it once a slow frame, after [`feel`](Self::feel).
+    /// Releases added force in mode `Watch`. `held` None: another source moves the hand, or it holds nothing.
+    /// Call it once a slow frame, after [`feel`](Self::feel).
     #[inline(never)]
     pub fn relax(&mut self, mode: GripMode, held: Option<&relax::Reading>) {
         match (mode, held) {
@@ -205,18 +191,14 @@ impl Reflex {
         }
     }
 
-    /// Whether a release step is under way.
-    #[must_use]
     pub const fn is_relaxing(&self) -> bool {
         self.relax.is_on()
     }
 
-    /// Ends a release step. Call it when a detector reports slip or a warning.
     pub fn hear(&mut self) {
         self.relax.hear();
     }
 
-    /// The drive of the release step in this frame; `Coast` if none is under way.
     pub fn relaxes(&mut self) -> MotorDrive {
         match self.relax.opens() {
             0 => MotorDrive::Coast,
@@ -224,26 +206,21 @@ impl Reflex {
         }
     }
 
-    /// Renews the blind budget: a muscle is active, and its wearer sees the hand.
+    /// A muscle is active, and its wearer sees the hand.
     pub const fn renew(&mut self) {
         (self.blind, self.began_mn, self.in_vain) = (0, None, 0);
     }
 
-    /// Spends a frame of the blind budget if the force is unknown: another source closes.
     pub fn spend(&mut self, grip: Grip) {
         if grip == Grip::Unknown {
             self.blind = self.blind.saturating_add(1);
         }
     }
 
-    /// How long the mode has lasted, in frames.
-    #[must_use]
     pub const fn elapsed(&self) -> u32 {
         self.elapsed
     }
 
-    /// Advances the time in `mode` by one frame. In a mode that closes, it spends a frame of the blind budget if the
-    /// force is unknown or an electrode is lost.
     pub fn tick(&mut self, mode: GripMode, grip: Grip) {
         self.elapsed = self.elapsed.saturating_add(1);
         self.since_incipient = self.since_incipient.saturating_add(1);
@@ -255,8 +232,6 @@ impl Reflex {
         }
     }
 
-    /// Whether the pulse of this mode is over. `slips`: a detector still says slip.
-    #[must_use]
     pub const fn pulse_over(&self, config: &GripConfig, mode: GripMode, slips: bool, grip: Grip) -> bool {
         let length = match mode {
             GripMode::Slip if slips => config.slip_frames_max,
@@ -271,31 +246,25 @@ impl Reflex {
         done || self.elapsed >= length || !self.may_close(config, grip)
     }
 
-    /// Whether a warning may be answered again: the last answer has had its time to show in Ft/Fn, and the last ones raised the
-    /// force. Slip itself is answered meanwhile.
-    #[must_use]
+    /// The last answer has had its time to show in Ft/Fn, and the last ones raised the force.
     pub fn may_tighten(&self, config: &GripConfig, grip: Grip) -> bool {
         let changed = matches!(grip, Grip::Holds(mn) if self.has_changed(mn));
         self.since_incipient >= config.settle_frames && (self.in_vain < IN_VAIN_MAX || changed)
     }
 
-    /// Whether the object has had its time to settle.
-    #[must_use]
     pub const fn settled(&self, config: &GripConfig) -> bool {
         self.elapsed >= config.settle_frames
     }
 
-    /// The reflex's drive in this mode. A small pulse that raised no force has stalled: the next is stronger by as much.
-    #[must_use]
+    /// A small pulse that raised no force has stalled: the next is stronger by as much.
     pub fn drive(&self, config: &GripConfig, mode: GripMode) -> MotorDrive {
         match mode {
             GripMode::Slip => MotorDrive::Close(Duty::per_mille(config.slip_duty_permille)),
             GripMode::Incipient => {
-                // A motor that reaches the ceiling at full duty stalls at no less than so much.
+                // Stall force at this duty of a motor that reaches the ceiling at full duty.
                 let stalls_mn = config.ceiling_mn / 1_000 * i32::from(config.incipient_duty_permille);
                 let stalled = if self.began_mn.is_some_and(|mn| mn >= stalls_mn) { self.in_vain } else { 0 };
                 let stronger = config.incipient_duty_permille.saturating_mul(stalled.saturating_add(1));
-                // Never stronger than what answers slip, unless it is set so.
                 let most = config.slip_duty_permille.max(config.incipient_duty_permille);
                 MotorDrive::Close(Duty::per_mille(stronger.min(most)))
             }
@@ -337,7 +306,6 @@ mod tests {
         assert_eq!(pulse_frames(GripMode::Settle, true, Grip::Holds(5_000)), 0);
     }
 
-    /// What a pulse adds to a load of 8 N, mN, where a frame at full duty adds this much 30 ms later, and so much is lacking.
     fn raised_mn(mode: GripMode, mn_a_frame: i32, lacks_mn: i32) -> i32 {
         let config = Config::default().grip;
         let mut reflex = Reflex::default();
@@ -356,7 +324,6 @@ mod tests {
                 reflex.feel(mode, Some(*load_mn), Lacks { slip_mn: lacks, warning_mn: lacks, by_s2: true });
             }
         };
-        // The wearer closes to 8 N, and stops.
         let mut closes_mn = 1_000;
         while closes_mn < 8_000 {
             frame(&mut reflex, &mut load_mn, 500, GripMode::Wearer, 0);
@@ -381,7 +348,6 @@ mod tests {
             for mn_a_frame in [40, 90, 360] {
                 for lacks_mn in [800, 1_500] {
                     let added = raised_mn(mode, mn_a_frame, lacks_mn);
-                    // No pulse is shorter than 3 ms.
                     let least = 6 * mn_a_frame;
                     assert!(
                         (lacks_mn * 4 / 5..=(lacks_mn * 5 / 4).max(least) + mn_a_frame).contains(&added),

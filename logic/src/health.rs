@@ -3,24 +3,20 @@
 use tenax_hal_shim::channel::{Channel, sample_from_mv};
 use tenax_hal_shim::words::Reason;
 
-/// Limits that the readings of a healthy sensor keep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
-    /// Lowest sample (14 bits).
     pub low: u16,
-    /// Highest sample (14 bits).
     pub high: u16,
-    /// Equal readings in a row that no working sensor gives, given the noise of its front end and of the converter.
+    /// Equal readings in a row that no working sensor gives.
     pub stuck_after: u32,
-    /// Bad readings in a row after which it is reported as lost. A single one already has no value.
+    /// Bad readings in a row after which it is reported. A single one already has no value.
     pub lost_after: u32,
     /// Good readings in a row after which a lost sensor is believed again.
     pub back_after: u32,
 }
 
 impl Limits {
-    /// Limits of a channel with `per_second` readings: lost after 25 ms of bad readings, back after 1 s of good ones, stuck
-    /// after 2 s of equal ones.
+    /// Lost after 25 ms of bad readings, back after 1 s of good ones, stuck after 2 s of equal ones.
     pub const fn of(channel: &Channel, per_second: u32) -> Self {
         let lost_after = per_second / 40;
         Self {
@@ -33,19 +29,15 @@ impl Limits {
     }
 }
 
-/// A change of a sensor's health that is to be reported.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Change {
-    /// The sensor gives no valid reading any more.
     Lost(Reason),
-    /// The sensor gives valid readings again.
     Back,
 }
 
-/// Watches one sensor.
 #[derive(Clone, Debug, Default)]
 pub struct SensorHealth {
-    /// 0 before the first reading: which, if it is 0 too, is one equal reading too many in a count of thousands.
+    /// Previous 14-bit sample; 0 at start.
     last: u16,
     same: u32,
     bad: u32,
@@ -54,8 +46,8 @@ pub struct SensorHealth {
 }
 
 impl SensorHealth {
-    /// Takes a 14-bit reading if it is plain, the usual case: in range, different from the last, of a
-    /// sensor that is not lost. False, and nothing changed, if it is not.
+    /// In range, different from the last, of a sensor that is not lost: the usual case. False, and nothing
+    /// changed, if not.
     #[inline]
     #[must_use]
     pub fn is_plain(&mut self, limits: &Limits, sample: u16) -> bool {
@@ -67,15 +59,19 @@ impl SensorHealth {
         plain
     }
 
-    /// Notes plain readings of a sensor that is not lost, the last of them this one, as if each had been
-    /// taken.
+    /// As if plain readings had been taken, this one last.
     pub const fn was_plain(&mut self, last: u16) {
         self.last = last;
         self.same = 0;
         self.bad = 0;
     }
 
-    /// Takes a 14-bit reading. Gives its value or the reason why it has none, and a change of the sensor's health.
+    /// [`take`](Self::take), with the usual case inlined.
+    #[inline]
+    pub fn read(&mut self, limits: &Limits, sample: u16) -> (Result<u16, Reason>, Option<Change>) {
+        if self.is_plain(limits, sample) { (Ok(sample), None) } else { self.take(limits, sample) }
+    }
+
     pub fn take(&mut self, limits: &Limits, sample: u16) -> (Result<u16, Reason>, Option<Change>) {
         self.same = if self.last == sample { self.same.saturating_add(1) } else { 0 };
         self.last = sample;
@@ -103,7 +99,6 @@ impl SensorHealth {
             }
             (Err(reason), None) => {
                 self.bad += 1;
-                // Being stuck has been waited for already.
                 if self.bad < limits.lost_after && reason != Reason::Stuck {
                     return (verdict, None);
                 }
@@ -118,7 +113,7 @@ impl SensorHealth {
         }
     }
 
-    /// Takes the sensor for lost although its readings are valid: it is back after `back_after` of them without another call.
+    /// Lost although its readings are valid: back after `back_after` of them without another call.
     pub fn lose(&mut self, reason: Reason) -> Option<Change> {
         self.good = 0;
         let is_new = self.lost.is_none();
@@ -126,17 +121,14 @@ impl SensorHealth {
         is_new.then_some(Change::Lost(reason))
     }
 
-    /// Readings in a row that were equal to the one before.
     pub const fn same(&self) -> u32 {
         self.same
     }
 
-    /// Why the sensor is lost. None: it is not.
     pub const fn lost(&self) -> Option<Reason> {
         self.lost
     }
 
-    /// Whether the sensor is lost.
     pub const fn is_lost(&self) -> bool {
         self.lost.is_some()
     }

@@ -1,22 +1,19 @@
-//! The decisions of the fingertip: sensor samples in, motor drive out. No heap, no I/O, no clock: time is counted in frames of 0.5 ms.
+//! The decisions of the fingertip: sensor samples in, motor drive out. No heap, no I/O, no clock: time is
+//! counted in frames of 0.5 ms.
 //!
-//! The modules, in the order in which data passes them:
-//!
-//! | step | modules |
+//! | step | modules, in the order in which data passes them |
 //! |---|---|
-//! | which readings can be used | [`health`] |
+//! | valid readings | [`health`] |
 //! | one sense each: readings, quantities, detector | [`vibration`], [`force`], [`strain`], [`mod@array`], [`hebbian`], [`photoelastic`]; [`emg`] and [`gate`] of the wearer |
 //! | a frame through all of them | [`senses`] |
-//! | whether the object slips | [`detectors`], the list of them; [`plausibility`] guards |
-//! | what to do | [`mode`] and [`grip`], the reflex; [`behaviours`]; [`arbiter`]; [`motor`] limits stall and heat; [`feedback`] to the wearer |
+//! | slip | [`detectors`]; [`plausibility`] guards |
+//! | reaction | [`mode`] and [`grip`], the reflex; [`behaviours`]; [`arbiter`]; [`motor`] limits stall and heat; [`feedback`] to the wearer |
 //! | the whole fingertip | [`fingertip`]; [`journal`] collects its reports |
-//! | a fingertip on a line | [`device`]: frames and commands in, drives and messages out. Begin there |
-//! | whether a command is accepted | [`session`], [`arming`] |
-//!
-//! [`config`] and [`setting`] hold every number that can be chosen; [`store`] saves settings, zero, weights and calibration.
+//! | a fingertip on a line | [`device`]: begin there |
+//! | accepted commands | [`session`], [`arming`] |
+//! | numbers | [`config`] and [`setting`]; [`store`] saves settings, zero, weights and calibration |
 #![no_std]
-// One measured kernel is excepted, `array::dual`; nothing else may be.
-#![deny(unsafe_code)]
+#![forbid(unsafe_code)]
 
 #[cfg(test)]
 extern crate std;

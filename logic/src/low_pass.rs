@@ -1,18 +1,14 @@
-//! The first-order low-pass of the films, in 32 bits.
+//! First-order low-pass in 32 bits: the bilinear transform of a single pole with its zero at Nyquist.
 //!
 //! ```text
 //! d = k (x - s)      y = s + d      s' = y + d        k = pi f / fs
 //! ```
 //!
-//! This is the bilinear transform of a single pole with its zero at Nyquist; its corner is warped as usual. It costs three
-//! instructions: a difference, a multiply-accumulate of the product's upper word, and `s' = 2 y - s`.
-//!
-//! A step is rounded down to a unit of the signal, so an output settles within `1 / k` units below its input: 32 units at
-//! 20 Hz, which is 2^-11 of a sample in Q16.
+//! A step is rounded down, so an output settles within `1 / k` units below its input: 32 units at 20 Hz.
 
 use tenax_hal_shim::channel::FRAME_HZ;
 
-/// A corner frequency. The state is an `i32` in the signal's unit, which begins at the signal's rest.
+/// The state is an `i32` in the signal's unit, beginning at the signal's rest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LowPass {
     /// Q32, below 2^31.
@@ -20,14 +16,13 @@ pub struct LowPass {
 }
 
 impl LowPass {
-    /// A low-pass with this corner frequency, above 0 and below 300 Hz, at one sample a frame (2 kHz).
+    /// Corner frequency, above 0 and below 300 Hz, at one sample a frame (2 kHz).
     pub const fn of(hz: f64) -> Self {
         assert!(hz > 0.0 && hz < 300.0, "k is below 1/2, or a step response would overshoot");
         Self { k: (core::f64::consts::PI * 4_294_967_296.0 * hz / FRAME_HZ as f64) as i32 }
     }
 
-    /// Takes a sample. Signal and state within +-2^30 stay there, and so does every difference of the two within an
-    /// `i32`, as long as no difference of two samples leaves it.
+    /// Signal and state within +-2^30 stay there, as long as no difference of two samples leaves an `i32`.
     #[inline]
     pub fn process(self, state: &mut i32, x: i32) -> i32 {
         let difference = i64::from(x.wrapping_sub(*state));

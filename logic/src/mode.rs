@@ -8,14 +8,11 @@ use Cause::{
 };
 use GripMode::{Incipient, Settle, Slip, Standby, Watch, Wearer};
 
-/// Stands for every detector in the table.
 const ANY: DetectorId = DetectorId::S1;
 
-/// Every legal step: from, why, to. A cause without a row for the mode changes nothing. The steps are the same for
-/// every detector.
-///
-/// Rules for entering: [`Slip`] and [`Incipient`], the only two that close the hand, are entered from [`Watch`] alone (and
-/// [`Slip`] from [`Incipient`]), and [`Watch`] is left for [`Wearer`] or [`Standby`] before a detector is asked.
+/// Every legal step, the same for every detector: from, why, to. A cause without a row changes nothing.
+/// [`Slip`] and [`Incipient`], the only two that close the hand, are entered from [`Watch`] alone (and
+/// [`Slip`] from [`Incipient`]); [`Watch`] is left for [`Wearer`] or [`Standby`] before a detector is asked.
 pub const TRANSITIONS: [(GripMode, Cause, GripMode); 17] = [
     (Standby, SensorsReady, Watch),
     (Wearer, SensorsLost, Standby),
@@ -39,7 +36,6 @@ pub const TRANSITIONS: [(GripMode, Cause, GripMode); 17] = [
 const MODES: usize = Settle as usize + 1;
 const CAUSES: usize = 8;
 
-/// A cause's place in the table.
 const fn index(cause: Cause) -> usize {
     match cause {
         SensorsReady => 0,
@@ -53,7 +49,7 @@ const fn index(cause: Cause) -> usize {
     }
 }
 
-/// The table by mode and cause, for three look-ups in every tick without a search.
+/// By mode and cause, for look-ups without a search.
 static NEXT: [[Option<GripMode>; CAUSES]; MODES] = {
     let mut next = [[None; CAUSES]; MODES];
     let mut row = 0;
@@ -65,14 +61,11 @@ static NEXT: [[Option<GripMode>; CAUSES]; MODES] = {
     next
 };
 
-/// The next mode after a cause; None if the mode stays.
-#[must_use]
+/// None if the mode stays.
 pub const fn next(from: GripMode, cause: Cause) -> Option<GripMode> {
     NEXT[from as usize][index(cause)]
 }
 
-/// Whether the reflex may drive the motor in this mode.
-#[must_use]
 pub const fn closes(mode: GripMode) -> bool {
     matches!(mode, Slip | Incipient)
 }
@@ -83,29 +76,6 @@ mod tests {
 
     const ALL: [GripMode; MODES] = [Standby, Wearer, Watch, Slip, Incipient, Settle];
 
-    #[test]
-    fn the_table_is_a_function_and_reaches_every_mode() {
-        for (n, a) in TRANSITIONS.iter().enumerate() {
-            assert!(!TRANSITIONS[n + 1..].iter().any(|b| (a.0, a.1) == (b.0, b.1)), "{a:?} stands twice");
-            assert_eq!(next(a.0, a.1), Some(a.2));
-        }
-        for mode in ALL {
-            assert!(
-                mode == Standby || TRANSITIONS.iter().any(|row| row.2 == mode && row.0 != mode),
-                "{mode:?}"
-            );
-        }
-    }
-
-    #[test]
-    fn every_mode_yields_to_the_wearer_and_to_lost_sensors() {
-        for mode in ALL {
-            assert!(matches!(mode, Standby | Wearer) || next(mode, TakenOver) == Some(Wearer), "{mode:?}");
-            assert!(mode == Standby || next(mode, SensorsLost) == Some(Standby), "{mode:?}");
-        }
-    }
-
-    /// Figure 9 as a drawing: every mode with every cause, in the causes' order below. A letter is the mode that it leads to.
     const FIGURE: [&str; MODES] = [
         "W.......", // Standby
         ".S.E....", // Wearer
@@ -129,17 +99,6 @@ mod tests {
                 assert_eq!(next(from, cause), to, "{from:?}, {cause:?}");
             }
             assert_eq!(closes(from), n == 3 || n == 4, "{from:?}");
-        }
-    }
-
-    // Shows R1.
-    #[test]
-    fn closing_is_entered_by_a_detector_alone() {
-        for (_, cause, _) in TRANSITIONS.iter().filter(|row| closes(row.2)) {
-            assert!(matches!(cause, Slips(_) | Warned(_)));
-        }
-        for (from, ..) in TRANSITIONS.iter().filter(|row| closes(row.2)) {
-            assert!(matches!(from, Watch | Incipient));
         }
     }
 }

@@ -1,16 +1,15 @@
-//! Limits of the motor: it is stopped by stall and by heat. A stopped motor is not driven, and the gear holds the object.
-//!
-//! The bridge's mirror shows the current only while the bridge drives, so the filtered pin reads duty times the winding's current
-//! (DRV8874, section 7.3.3; docs/hardware.md). Of a blocked motor that is duty squared times the stall current.
+//! Limits of the motor. A stopped motor is not driven, and the gear holds the object. The bridge's mirror
+//! shows duty times the winding's current (DRV8874, section 7.3.3): of a blocked motor, duty squared times
+//! the stall current.
 //!
 //! | judged once a slow frame | from | stops |
 //! |---|---|---|
 //! | stall: half of a blocked motor's current or more, and the fingers stand still | current and opening, or the one that is left | the way it was driven |
-//! | heat: the current shown times the stall current, which is the winding's squared if it is blocked and more if it turns | current, or else the duty | closing |
+//! | heat: the current shown times the stall current | current, or else the duty | closing |
 //!
-//! A stalled direction is driven again after 0.15 s without a request for it, after a request for the other direction, or for a drive that
-//! is stronger by an eighth. So an opening always wins: at once after a stalled closing, and after its own stall by a new request.
-//! Heat never stops an opening: a hand that cannot let go is worse than a hot motor, and a stall ends each try.
+//! A stalled direction is driven again after 0.15 s without a request for it, after one for the other
+//! direction, or for a drive stronger by an eighth. Heat never stops an opening: a hand that cannot let go is
+//! worse than a hot motor.
 
 pub mod settings;
 
@@ -30,15 +29,16 @@ use crate::arming::STEP_FRAMES;
 use crate::health::{Change, Limits, SensorHealth};
 use crate::journal::{Journal, report};
 
-/// Number of looks at the drive in a slow frame.
+/// Looks at the drive in a slow frame.
 const STEPS: u32 = FRAMES_PER_SLOW_FRAME as u32 / STEP_FRAMES;
-/// Slow frames of stall after which the motor stops: 0.3 s, so that 0.5 s are kept with the filter at the pin and the motor's dead time.
+/// Slow frames of stall after which the motor stops: 0.3 s, so that 0.5 s are kept with the filter at the pin
+/// and the dead time.
 const STALL_CYCLES: u8 = 24;
 /// Mean duty below which the motor does not move, per mille.
 const LEAST_PERMILLE: u32 = 50;
-/// A stalled motor is driven again if the duty is larger by this, per mille.
+/// Increase of the duty from which a stalled motor is driven again, per mille.
 const STRONGER_PERMILLE: u16 = 125;
-/// Fingers that move change the opening's reading by more than this: 8 mV, a third of a millimetre.
+/// Least change of the opening's reading of moving fingers: 8 mV, a third of a millimetre.
 const MOVED: u16 = sample_from_mv(8);
 /// The winding's time constant is `2^HEAT_SHIFT` slow frames: 6.4 s (small brushed motors: 5 to 15 s).
 const HEAT_SHIFT: u32 = 9;
@@ -55,7 +55,6 @@ const _: () = assert!(CHANNELS[MOTOR_CURRENT].low_mv == CHANNELS[OPENING].low_mv
 const _: () = assert!(CHANNELS[MOTOR_CURRENT].high_mv == CHANNELS[OPENING].high_mv);
 const REST: u16 = sample_from_mv(CHANNELS[MOTOR_CURRENT].rest_mv);
 
-/// One of the hand's own sensors.
 #[derive(Clone, Debug, Default)]
 struct Sensor {
     health: SensorHealth,
@@ -64,7 +63,6 @@ struct Sensor {
 }
 
 impl Sensor {
-    /// The reading of this cycle, None where there is none.
     fn reading(&mut self, channel: usize, journal: &mut Journal) -> Option<u16> {
         let (reading, change) = self.health.take(&LIMITS, self.sample?);
         report(journal, channel, change);
@@ -72,32 +70,27 @@ impl Sensor {
     }
 }
 
-/// Current, opening, stall and heat of the motor.
 #[derive(Clone, Debug, Default)]
 pub struct Motor {
     current: Sensor,
     opening: Sensor,
-    /// The opening's reading when the fingers were last seen to move.
+    /// Opening as the fingers were last seen to move.
     stood: u16,
-    /// Sum of the duty over the [`STEPS`] looks of this slow frame; the largest since the stall began.
+    /// Sum of the duty over the looks of this slow frame; the largest since the stall began.
     duty_sum: u16,
     duty_most: u16,
-    /// A drive was asked for in this slow frame.
     asked: bool,
-    /// The drive that was asked for last opens.
     opens: bool,
     /// Slow frames of stall, less those without.
     stall: u8,
     stalled: bool,
-    /// mA squared times `2^HEAT_SHIFT` when it flows for ever.
+    /// mA^2 times `2^HEAT_SHIFT` in the steady state.
     heat: u32,
     hot: bool,
-    /// The least duty that may close and open, per mille.
+    /// Least duty that may close and open, per mille.
     least: [u16; 2],
-    /// Any of it is not 0: nearly never.
     is_barred: bool,
     told: Option<MotorStop>,
-    /// The bridge says that it has switched itself off.
     bridge_is_off: bool,
     /// Slow frames without a drive, and those of them with current.
     idle: u8,
@@ -107,20 +100,17 @@ pub struct Motor {
 }
 
 impl Motor {
-    /// Takes a 14-bit reading of the motor's current or of the opening, None if its frame was lost. [`judge`](Self::judge) uses it later:
-    /// the array has work in the same slots.
+    /// 14-bit reading of current or opening, None if its frame was lost. Used by [`judge`](Self::judge)
+    /// later: the array has work in the same slots.
     pub const fn take(&mut self, channel: usize, sample: Option<u16>) {
         let sensor = if channel == OPENING { &mut self.opening } else { &mut self.current };
         sensor.sample = sample;
     }
 
-    /// Sets whether the bridge reports that it has switched itself off, until the next call.
     pub const fn bridge(&mut self, is_off: bool) {
         self.bridge_is_off = is_off;
     }
 
-    /// Whether the limits allow this drive.
-    #[must_use]
     #[inline]
     pub const fn allows(&self, drive: MotorDrive) -> bool {
         !self.is_barred || self.is_allowed(drive)
@@ -135,9 +125,8 @@ impl Motor {
         }
     }
 
-    /// Records the last frame's drives for [`judge`](Self::judge): `asked` was requested, `drive` is what the limits
-    /// allowed of it. A request for the other direction than the last ends a stall. Call it every [`STEP_FRAMES`]
-    /// frames.
+    /// `asked` was requested in the last frame, `drive` is what the limits allowed of it. A request for the
+    /// other direction ends a stall. Call it every [`STEP_FRAMES`] frames.
     pub const fn step(&mut self, asked: MotorDrive, drive: MotorDrive) {
         let opens = match asked {
             MotorDrive::Coast => return,
@@ -158,7 +147,7 @@ impl Motor {
         }
     }
 
-    /// Judges stall and heat, and reports changes. Call it once a slow frame, always in the same slot.
+    /// Call it once a slow frame, always in the same slot.
     #[inline(never)]
     pub fn judge(&mut self, config: &MotorConfig, journal: &mut Journal) {
         let duty = u32::from(take(&mut self.duty_sum)) / STEPS;
@@ -169,14 +158,14 @@ impl Motor {
         let moved = self.moved(journal);
         self.warm(u32::from(config.limit_ma), stall_ma, ma, moved, duty);
 
-        // Of a blocked motor the winding has this much, and the pin shows a part of it that is the duty.
+        // Current of a blocked motor's winding; the pin shows a part of it that is the duty.
         let blocked_ma = stall_ma * duty / 1_000;
         let draws = match ma {
             Some(ma) => 2_000 * ma >= blocked_ma * duty,
             None => moved.is_some(),
         };
         if self.stalled && duty > 0 {
-            // What it stalled at is not allowed: this is a stronger drive.
+            // Only a stronger drive than the stalled one is allowed.
             self.free();
         }
         if duty >= LEAST_PERMILLE && draws && moved != Some(true) {
@@ -198,13 +187,11 @@ impl Motor {
         self.tell(journal);
     }
 
-    /// Ends the stall: another drive is asked for, or the fingers move.
     const fn free(&mut self) {
         (self.stall, self.stalled, self.duty_most) = (0, false, 0);
         self.close_ways();
     }
 
-    /// Updates which drives are allowed.
     const fn close_ways(&mut self) {
         let stalled = if self.stalled { self.duty_most.saturating_add(STRONGER_PERMILLE) } else { 0 };
         self.least = match self.opens {
@@ -222,7 +209,7 @@ impl Motor {
             (true, false) => Some(MotorStop::ClosingStalled),
             (true, true) => Some(MotorStop::OpeningStalled),
             (false, _) if self.hot => Some(MotorStop::Hot),
-            // It protects itself: to be driven on does no harm, and shows when it is back.
+            // The bridge protects itself: driving on does no harm, and shows when it is back.
             (false, _) => self.bridge_is_off.then_some(MotorStop::BridgeOff),
         };
         if self.told != stop {
@@ -231,7 +218,7 @@ impl Motor {
         }
     }
 
-    /// The current that the pin shows, mA. None where the sensor gives no number, or one that cannot be.
+    /// mA at the pin. None without a number, or with one that cannot be.
     fn current_ma(&mut self, stall_ma: u32, journal: &mut Journal) -> Option<u32> {
         let reading = self.current.reading(MOTOR_CURRENT, journal)?;
         let ma = (u32::from(reading.saturating_sub(REST)) * MA_Q14) >> 14;
@@ -242,7 +229,7 @@ impl Motor {
                 self.odd.saturating_sub(1)
             };
             if !self.contradicts && self.odd == ODD_CYCLES {
-                // Whatever it has said of the heat was wrong as well.
+                // The heat that it has shown was wrong as well.
                 (self.contradicts, self.heat) = (true, self.heat / 16);
                 report(journal, MOTOR_CURRENT, Some(Change::Lost(Reason::Creep)));
             } else if self.contradicts && self.odd == 0 {
@@ -253,7 +240,7 @@ impl Motor {
         (!self.contradicts).then_some(ma)
     }
 
-    /// Whether the fingers have moved since the last cycle. None while the opening gives no number.
+    /// None while the opening gives no number.
     fn moved(&mut self, journal: &mut Journal) -> Option<bool> {
         let opening = self.opening.reading(OPENING, journal)?;
         let moved = opening.abs_diff(self.stood) > MOVED;
@@ -263,7 +250,7 @@ impl Motor {
         Some(moved)
     }
 
-    /// Heats the winding for a slow frame. If the current is unknown, that of a blocked motor is taken, or half of it while the
+    /// Heat of a slow frame. An unknown current counts as that of a blocked motor, or half of it while the
     /// fingers move. A motor that is not driven cools, whatever current the sensor shows.
     fn warm(&mut self, limit_ma: u32, stall_ma: u32, ma: Option<u32>, moved: Option<bool>, duty: u32) {
         let blocked_ma = stall_ma * duty / 1_000;

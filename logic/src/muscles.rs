@@ -14,47 +14,43 @@ use crate::emg::{Emg, Verdict, uv_of_sample};
 use crate::health::{Limits, SensorHealth};
 use crate::journal::Journal;
 
-/// Readings that a muscle may miss in a row, its frames lost, before its last one is no reading of now: all of one slow
-/// frame.
+/// Readings that a muscle may miss in a row: all of one slow frame.
 const MISSES: u8 = 3;
 /// Readings of each myosensor a second: three places in every slow frame.
 const HZ: u32 = 3 * SLOW_HZ;
-/// Equal readings of an active muscle in a row that no muscle gives: 50 ms. At rest, the general limit holds.
+/// Equal readings of an active muscle in a row that no muscle gives: 50 ms.
 const FROZEN_AFTER: u32 = HZ / 20;
 
 /// A gap of 50 ms is bridged.
 static LIMITS: Limits = Limits { lost_after: HZ / 20 + 1, ..Limits::of(&CHANNELS[MYO_FLEXOR], HZ) };
 
-/// A calibration under way, and what was last asked.
 #[derive(Clone, Debug)]
 struct Lesson {
     calibration: Calibration,
     asked: Option<Prompt>,
 }
 
-/// Both myosensors.
 #[derive(Clone, Debug, Default)]
 pub struct Muscles {
     emg: Emg,
     health: [SensorHealth; 2],
     missed: [u8; 2],
-    /// Whether each signal cannot be an active muscle, by its last sample: below range, below activity, or constant.
+    /// No active muscle by its last sample: below range, below activity, or constant.
     idle: [bool; 2],
-    /// Whether each has given two active readings in a row that differ: a glitch or a frozen sensor is not a wish.
+    /// Two active readings in a row that differ: a glitch or a frozen sensor is not a wish.
     confirmed: [bool; 2],
-    /// Reported reason why each is lost.
     lost: [Option<Reason>; 2],
-    /// The last readings that were in range, uV above the live zero.
+    /// Last readings in range, uV above the live zero.
     uv: [Option<i32>; 2],
     model: Option<EmgModel>,
     watch: Watch,
     lesson: Option<Lesson>,
-    /// When the last calibration ended, in frames, and whether it was taken.
+    /// Frame at which the last calibration ended, and whether it was taken.
     ended: Option<(u32, bool)>,
 }
 
-/// Times of the light, frames: the result of a calibration; on and off of a refusal; on and off of the prompt to open; period
-/// and flash of the prompt to rest.
+/// Light: result of a calibration; on and off of a refusal; of the prompt to open; period and flash of the
+/// prompt to rest.
 const RESULT_FRAMES: u32 = frames(2_000);
 const REFUSED_FRAMES: u32 = frames(50);
 const OPEN_FRAMES: u32 = frames(100);
@@ -63,8 +59,7 @@ const REST_FRAMES: [u32; 2] = [frames(1_000), frames(100)];
 const ASK_FRAMES: u32 = frames(4_000);
 
 impl Muscles {
-    /// Takes a 14-bit sample of muscle 0 (flexor) or another (extensor). Gives the envelope above the live zero, uV, None if the sensor
-    /// gives no number.
+    /// 14-bit sample of muscle 0 (flexor) or another (extensor). Gives the envelope above the live zero, uV.
     pub fn take(&mut self, muscle: usize, sample: u16, journal: &mut Journal) -> Option<i32> {
         let n = muscle.min(1);
         self.missed[n] = 0;
@@ -77,15 +72,14 @@ impl Muscles {
         let is_low = sample < LIMITS.low;
         self.idle[n] = is_low || sample <= LIMITS.high && self.emg.is_idle(n, uv_of_sample(sample));
         let uv = reading.ok().map(uv_of_sample);
-        // Above its range it is no number, but what it began goes on.
+        // Above its range there is no number, but a motion that has begun goes on.
         self.read(n, uv.or_else(|| (sample > LIMITS.high).then(|| uv_of_sample(sample))), journal);
         let differs = self.health[n].same() == 0;
         self.confirmed[n] = self.emg.is_raised(n) && (self.confirmed[n] || (was_raised && differs));
         uv
     }
 
-    /// The frame of this muscle was lost: its last reading counts once more, since readings measure
-    /// time. True if too many were lost for it to have a reading.
+    /// The last reading counts once more, since readings measure time. True if too many frames were lost.
     pub fn miss(&mut self, muscle: usize, journal: &mut Journal) -> bool {
         let n = muscle.min(1);
         self.missed[n] = self.missed[n].saturating_add(1);
@@ -110,7 +104,6 @@ impl Muscles {
         }
     }
 
-    /// The first reason is told; one that stood still may later turn out to be mains.
     #[inline(never)]
     fn tell(&mut self, muscle: usize, lost: Option<Reason>, journal: &mut Journal) {
         let n = muscle.min(1);
@@ -125,7 +118,7 @@ impl Muscles {
         self.lost[n] = lost;
     }
 
-    /// The wearer's wish and activity. During a calibration the wish is rest, and no other source may move the hand.
+    /// During a calibration the wish is rest, and no other source may move the hand.
     pub fn verdict(&self) -> Verdict {
         let mut verdict = self.emg.verdict();
         let [flexor, extensor] = [0, 1].map(|n: usize| self.emg.is_known(n));
@@ -145,38 +138,32 @@ impl Muscles {
         }
     }
 
-    /// Whether a muscle with a healthy sensor is active.
     pub fn is_heard(&self) -> bool {
         self.emg.is_active(0) || self.emg.is_active(1)
     }
 
-    /// The wearer's calibration. None: not calibrated.
     pub const fn model(&self) -> Option<&EmgModel> {
         self.model.as_ref()
     }
 
-    /// Sets the wearer's calibration from now on.
     pub fn calibrate(&mut self, model: EmgModel) {
         self.emg.calibrate(Some(&model));
         self.model = Some(model);
         self.watch = Watch::default();
     }
 
-    /// Begins a calibration at this frame: the light asks for rest, closing and opening. The caller refuses it while something is held.
+    /// The caller refuses it while something is held.
     pub fn begin_calibration(&mut self, frame: u32) {
         self.lesson = Some(Lesson { calibration: Calibration::begin(frame), asked: None });
     }
 
-    /// Whether a calibration is under way.
     pub const fn is_calibrating(&self) -> bool {
         self.lesson.is_some()
     }
 
-    /// Returns whether the light at the hand is on in this frame. During a calibration, a short flash a second asks for
-    /// rest, a steady light for closing, five flashes a second for opening. For 2 s after it, a steady light means that
-    /// the calibration was taken, ten flashes a second that it was refused. Otherwise two short flashes every 4 s mean
-    /// that the calibration does not fit any more, three that the electrodes look exchanged.
-    #[must_use]
+    /// Prompts: a short flash a second for rest, steady for closing, five flashes a second for opening. For 2
+    /// s after: steady if taken, ten flashes a second if refused. Later, every 4 s: two short flashes if the
+    /// calibration fits no more, three if the electrodes look exchanged.
     pub fn light(&self, frame: u32) -> bool {
         if let Some(lesson) = &self.lesson {
             return match lesson.asked {
@@ -202,7 +189,6 @@ impl Muscles {
         }
     }
 
-    /// Ends a calibration without a result.
     #[inline(never)]
     pub fn give_up(&mut self, why: words::CalibrationRefusal, journal: &mut Journal) {
         if self.lesson.take().is_some() {
@@ -210,7 +196,6 @@ impl Muscles {
         }
     }
 
-    /// A pair of readings is complete.
     #[inline(never)]
     fn learn(&mut self, journal: &mut Journal) {
         let frame = journal.frame();
@@ -226,8 +211,8 @@ impl Muscles {
         }
     }
 
-    /// Does the work that takes too long for a tick: the spectrum of one electrode, or the end of a calibration. Call it once a
-    /// slow frame, always after the same tick. True if there is a new calibration.
+    /// A spectrum of one electrode, or the end of a calibration. Call it once a slow frame, always after the
+    /// same tick. True if there is a new calibration.
     #[inline(never)]
     pub fn think(&mut self, journal: &mut Journal) -> bool {
         if let Some(lesson) = &mut self.lesson {
@@ -257,7 +242,6 @@ impl Muscles {
         false
     }
 
-    /// Whether [`think`](Self::think) has a spectrum to compute.
     pub fn has_window(&self) -> bool {
         self.lesson.is_none() && (0..2).any(|n| self.emg.window(n).is_some())
     }
@@ -280,7 +264,6 @@ impl Muscles {
     }
 }
 
-/// What a lost sensor is reported with. None while it is good.
 const fn reason_of(quality: Quality) -> Option<Reason> {
     match quality {
         Quality::Good => None,

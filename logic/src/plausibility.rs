@@ -1,14 +1,8 @@
-//! Plausibility: a detector that reports slip while nothing is held is ignored, and so is what the array begins to say as the hand
-//! tightens on a warning of S2 or an impact rings.
+//! Detectors that are ignored: one that reports slip while the finger touches nothing, and the array's
+//! verdicts that begin as the hand tightens on a warning of S2 or an impact rings ([`Disturbance`]).
 //!
-//! A detector knows the noise that it was made with. With more of it, from a bad supply, a motor's cable or a broken film,
-//! it takes noise for slip, and the reflex would answer with pulse after pulse up to the force ceiling: nothing that is
-//! held ever stops it. What it reports while the finger is known to touch nothing is certainly wrong.
-//!
-//! A hand that closes moves load between the array's elements as what slides does, and its network has learned from hands that
-//! closed because something slid; an impact shakes them. So a verdict of its that begins while the hand tightens on S2's warning or
-//! while an impact rings, or as long after as its longest change looks back, is no reason to close further ([`Disturbance`]); one
-//! that stood before is. What shear foretells by a learned friction is not among them: slip follows that warning.
+//! A detector that meets more noise than it was made for reports slip without end, and the reflex would close
+//! up to the force ceiling. Closing and impacts move load between the array's elements as sliding does.
 
 use tenax_hal_shim::channel::SLOW_HZ;
 
@@ -16,13 +10,12 @@ use crate::array::SPECTRUM_WINDOW;
 use crate::array::past::LAG_MAX;
 use crate::array::structure::LAGS;
 
-/// Slow frames after which an empty hand's windows hold nothing any more of what was held or dropped before: the longest,
-/// twice, for the verdict's own hold.
+/// Slow frames after which an empty hand's windows hold nothing of an object: the longest, twice, for the
+/// verdict's own hold.
 const EMPTY_AFTER: u16 = (2 * if SPECTRUM_WINDOW > LAG_MAX { SPECTRUM_WINDOW } else { LAG_MAX }) as u16;
 /// Slow frames of silence in an empty hand after which the detector is believed again: ten seconds.
 const SILENT_FOR: u16 = 10 * SLOW_HZ as u16;
 
-/// Whether one detector is believed: until it reports slip of an empty hand.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Plausibility {
     empty: u16,
@@ -32,8 +25,7 @@ pub struct Plausibility {
 }
 
 impl Plausibility {
-    /// Takes a slow frame: whether the finger is known to touch nothing, and whether the detector reports slip all the same.
-    /// A report of up to `tolerated` slow frames in a row is forgiven.
+    /// One slow frame. A report of up to `tolerated` slow frames in a row is forgiven.
     pub fn step(&mut self, unloaded: bool, says: bool, tolerated: u16) {
         self.empty = if unloaded { self.empty.saturating_add(1) } else { 0 };
         if self.empty <= EMPTY_AFTER {
@@ -44,16 +36,14 @@ impl Plausibility {
         self.ignored = self.says > tolerated || (self.ignored && self.silent < SILENT_FOR);
     }
 
-    /// Whether the detector is ignored.
     pub const fn is_ignored(&self) -> bool {
         self.ignored
     }
 }
 
-/// Slow frames after either in which no verdict of the array is believed that begins.
+/// Slow frames after a disturbance in which no verdict of the array that begins is believed.
 const MOVED_FOR: u8 = LAGS[LAGS.len() - 1] as u8;
 
-/// Whether something else than slip explains the array's verdict.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Disturbance {
     /// Slow frames since the array was disturbed, up to [`MOVED_FOR`].
@@ -63,19 +53,16 @@ pub struct Disturbance {
 }
 
 impl Disturbance {
-    /// The array is disturbed, between slow frames.
     pub const fn begin(&mut self) {
         self.still = 0;
     }
 
-    /// Takes a slow frame: whether the array is disturbed, and whether it says slip.
     pub fn step(&mut self, disturbed: bool, says: bool) {
         self.still = if disturbed { 0 } else { self.still.saturating_add(1).min(MOVED_FOR) };
         self.says = says;
         self.began_still = says && (self.began_still || self.still >= MOVED_FOR);
     }
 
-    /// Whether the disturbance may explain the present report.
     pub const fn explains_it(&self) -> bool {
         self.says && !self.began_still
     }

@@ -1,7 +1,5 @@
-//! What a hand still does that has restarted too often ([`restart`](crate::restart)): a press of its button opens it.
-//!
-//! No muscle and no line: they need the converter, its DMA, the calibration, telemetry, and any of these may be what failed. The button
-//! needs a pin, a clock and the bridge.
+//! Control after too many restarts in a row ([`restart`](crate::restart)): a press of the button opens the
+//! hand. Muscles and line need the converter, DMA and telemetry, any of which may be what failed.
 
 use tenax_hal_shim::channel::{FRAME_HZ, frames};
 use tenax_hal_shim::motor::{Duty, MotorDrive};
@@ -9,14 +7,11 @@ use tenax_hal_shim::motor::{Duty, MotorDrive};
 use crate::arming::STEP_FRAMES;
 use crate::button::{Button, Press};
 
-/// Time between two steps, us.
 pub const STEP_US: u32 = STEP_FRAMES * 1_000_000 / FRAME_HZ;
-/// A press opens for 4 s at most: at this duty all of the range.
+/// Longest opening of a press, 4 s: all of the range at this duty.
 const OPENS_STEPS: u32 = frames(4_000) / STEP_FRAMES;
-/// Duty of the slow opening: the default's slowest.
 const SLOWLY: Duty = Duty::per_mille(300);
 
-/// The button, and what it has asked for.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Rescue {
     button: Button,
@@ -24,8 +19,7 @@ pub struct Rescue {
 }
 
 impl Rescue {
-    /// Advances by one step; gives the motor's drive until the next. Held for 1 to 3 s and let go, the button opens; pressed
-    /// again, it stops.
+    /// Drive until the next step. Held for 1 to 3 s and let go, the button opens; pressed again, it stops.
     pub fn step(&mut self, is_down: bool) -> MotorDrive {
         self.opens = self.opens.saturating_sub(1);
         match self.button.tick(is_down, false, self.opens > 0) {

@@ -3,8 +3,7 @@
 use tenax_hal_shim::channel::{CHANNELS, COUNT, Input, PVDF_COUNT, SWITCH_INPUTS};
 use tenax_hal_shim::frame::Frame;
 
-/// The last samples, each as old as its channel is slow. Kept as they come, twelve and two a frame; only who asks pays
-/// for putting them in order.
+/// Kept as they come; putting them in order is left to the rare reader.
 #[derive(Clone, Debug, Default)]
 pub struct LastSamples {
     pvdf: [u16; PVDF_COUNT],
@@ -13,7 +12,6 @@ pub struct LastSamples {
 }
 
 impl LastSamples {
-    /// Takes a frame's samples.
     pub fn record(&mut self, frame: &Frame) {
         if !frame.valid {
             return;
@@ -24,13 +22,12 @@ impl LastSamples {
         self.switch_b[select] = frame.switch_b;
     }
 
-    /// The last 14-bit sample of each input of switch B; 0 of one without a sample yet.
+    /// 14-bit samples; 0 of an input without a sample yet.
     pub const fn switch_b(&self) -> &[u16; SWITCH_INPUTS as usize] {
         &self.switch_b
     }
 
-    /// Returns the last 14-bit sample of every channel, in the order of [`CHANNELS`]; 0 for a channel without a sample
-    /// yet.
+    /// Last 14-bit samples in the order of [`CHANNELS`]; 0 for a channel without a sample yet.
     pub fn in_order(&self) -> [u16; COUNT] {
         let last = |samples: &[u16], place: u8| samples.get(usize::from(place)).copied().unwrap_or(0);
         CHANNELS.map(|channel| match channel.input {

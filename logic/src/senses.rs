@@ -35,24 +35,23 @@ use crate::vibration::sliding::Hand;
 use crate::vibration::{Trust, Vibration, VibrationDetector};
 use tenax_hal_shim::channel::frames;
 
-/// Time for filters and switches to settle after the start, frames.
+/// Time for filters and switches to settle after the start.
 const WARM_UP_FRAMES: u32 = frames(200);
-/// Frames lost in a row after which the last readings of the switched sensors are no longer believed: one slow frame.
+/// Frames lost in a row after which the switched sensors' last readings are stale: one slow frame.
 const STALE_FRAMES: u32 = tenax_hal_shim::channel::FRAMES_PER_SLOW_FRAME as u32;
-/// Consecutive readings that a quadrant may miss by lost frames before its last one is stale. A tick that is always late loses
-/// the same slots of every slow frame, and never reaches [`STALE_FRAMES`].
+/// Readings that a quadrant may miss by lost frames. A tick that is always late loses the same slots of every
+/// slow frame, and never reaches [`STALE_FRAMES`].
 const QUADRANT_MISSES: u8 = 2;
-/// The hand is surely open after it has been opened for this long since it was last closed, in frames: at its slowest it has
-/// moved 2 cm.
+/// Opening since the last closing after which the hand is surely open: at its slowest it has moved 2 cm.
 const OPEN_FRAMES: u32 = frames(600);
-/// Slow frames in which a hand that is surely open reads a load before that is reported: 4 s, several times what a zero takes to follow.
+/// Slow frames in which a surely open hand reads a load before that is reported: 4 s, several times what a
+/// zero takes to follow.
 const DOUBTED_AFTER: u16 = 4 * SLOW_HZ as u16;
-/// A quadrant that is this far above its zero at power-up counts as pressed, uV.
+/// Least offset of a quadrant at power-up that counts as pressed, uV.
 const PRESSED_UV: i32 = 100_000;
 
 static FSR_LIMITS: Limits = Limits::of(&CHANNELS[FSR], SLOW_HZ);
 
-/// Every sensor with its health and filters, and the quantities of the last frame.
 #[derive(Clone, Debug, Default)]
 pub struct Senses {
     films: PvdfQuality,
@@ -63,45 +62,36 @@ pub struct Senses {
     fsr_missed: [u8; FSR_COUNT],
     fsr_seen: bool,
     pressed: bool,
-    /// The quadrant (0 to 3) that was reported to contradict the others.
+    /// Quadrant (0 to 3) that was reported to contradict the others.
     blamed: Option<u8>,
     force_sensor: ForceSensor,
     detector: VibrationDetector,
     gauges: Gauges,
     taxels: Taxels,
-    /// The photoelastic head in the place of the last film, if fitted.
     head: Head,
     head_is_fitted: bool,
     frames_seen: u32,
     /// Frames in which the hand was opened since it was last closed.
     open_frames: u32,
-    /// Frames since the motor was driven.
     still_frames: u32,
-    /// Whether the reflex is in a pulse against slip or settles after it.
+    /// A pulse against slip, or settling after it.
     striking: bool,
-    /// Slow frames in which the hand was surely open and read a load.
     open_and_loaded: u16,
     frames_lost: u32,
     films_usable: bool,
     lost: [bool; 3],
-    /// Vibration of all films together.
     pub vibration: Vibration,
-    /// Forces of the force sensor or the photoelastic head, None while neither gives a number.
+    /// Of the force sensor or the photoelastic head, None while neither gives a number.
     pub forces: Option<Forces>,
-    /// Whether this frame brought new forces.
     pub forces_are_new: bool,
-    /// The wearer's wish and activity.
     pub gate: Gate,
-    /// Stall and heat of the motor.
     pub motor: Motor,
-    /// Load class: unknown, unloaded, or the load.
     pub grip: Grip,
-    /// The finger is known to touch nothing: its load is below a quarter of `loaded-mn`.
+    /// Load below a quarter of `loaded-mn`: the finger touches nothing.
     pub unloaded: bool,
 }
 
 impl Senses {
-    /// Takes a valid frame.
     pub fn process(&mut self, config: &Config, frame: &Frame, journal: &mut Journal) {
         if self.frames_lost > 0 {
             journal.fault(Fault::FramesLost { count: self.frames_lost });
@@ -125,8 +115,8 @@ impl Senses {
         }
     }
 
-    /// Takes a lost frame: the films give nothing, the switched channel of its slot has no reading, and the others expire
-    /// after a slow frame of lost frames.
+    /// The films give nothing, the switched channel of the slot has no reading, and the others expire after a
+    /// slow frame of lost frames.
     pub fn lose(&mut self, config: &Config, frame: &Frame, journal: &mut Journal) {
         self.frames_lost = self.frames_lost.saturating_add(1);
         self.vibration = Vibration { masked: self.vibration.masked, ..Vibration::default() };
@@ -147,10 +137,8 @@ impl Senses {
         self.capabilities(journal);
     }
 
-    /// The detectors' input of this frame. `duty_permille`: the motor's drive, 0 to 1000. `moves`: the reflex
-    /// moves the hand or lets it settle.
+    /// `duty_permille`: 0 to 1000. `moves`: the reflex moves the hand or lets it settle.
     #[inline(always)]
-    #[must_use]
     pub fn sensed(&self, config: &Config, frame: &Frame, duty_permille: u16, moves: bool) -> Sensed<'_> {
         let (vibration, wearer) = (self.vibration, self.gate.is_active());
         Sensed {
@@ -173,8 +161,8 @@ impl Senses {
         }
     }
 
-    /// Takes the motor's drive of the last so many frames: a hand that was opened for long enough, and not closed since, is open.
-    /// `took_back`: the reflex released force. `striking`: the reflex answers slip or lets the object settle, so the hand is loud.
+    /// Drive of the last `frames`. `took_back`: the reflex released force. `striking`: the reflex answers
+    /// slip or lets the object settle, so the hand is loud.
     pub const fn driven(&mut self, drive: MotorDrive, took_back: bool, striking: bool, frames: u32) {
         self.striking = striking;
         let still = !took_back && matches!(drive, MotorDrive::Coast);
@@ -187,7 +175,7 @@ impl Senses {
         }
     }
 
-    /// Takes the last readings of the force sensor and of the gauges as their zeros; false if the finger is loaded.
+    /// False if the finger is loaded.
     #[must_use]
     pub fn zero(&mut self) -> bool {
         let unloaded = self.force_sensor.zero();
@@ -197,60 +185,50 @@ impl Senses {
         unloaded
     }
 
-    /// The force sensor.
     pub const fn force_sensor(&self) -> &ForceSensor {
         &self.force_sensor
     }
 
-    /// The force sensor, to restore a saved zero.
     pub const fn force_sensor_mut(&mut self) -> &mut ForceSensor {
         &mut self.force_sensor
     }
 
-    /// Each film's envelope in the slip band, Q16 samples.
     pub const fn envelopes(&self) -> &[i32; PVDF_COUNT] {
         self.detector.envelopes()
     }
 
-    /// Both myosensors.
     pub const fn muscles(&self) -> &Muscles {
         &self.muscles
     }
 
-    /// Both myosensors, to calibrate them.
     pub const fn muscles_mut(&mut self) -> &mut Muscles {
         &mut self.muscles
     }
 
-    /// The gauges.
     pub const fn gauges(&self) -> &Gauges {
         &self.gauges
     }
 
-    /// The last readings of the normal-force array.
     pub const fn taxels(&self) -> &Reading {
         self.taxels.reading()
     }
 
-    /// The photoelastic head; without readings while a film is in its place.
     pub const fn head(&self) -> &Head {
         &self.head
     }
 
-    /// Whether enough films work for vibration to be judged.
     pub const fn hears(&self) -> bool {
         self.films_usable
     }
 
-    /// Whether the reflex may work: slip can be felt, and (with a wearer) both muscles are known, or one is and the other cannot be
+    /// Slip can be felt, and (with a wearer) both muscles are known, or one is and the other cannot be
     /// active.
-    #[must_use]
     pub fn ready(&self, config: &Config) -> bool {
         self.feels() && (config.no_wearer || self.gate.is_half_certain(&config.gate))
     }
 
-    /// Like [`ready`](Self::ready), but both muscles must be known: for behaviours, which do more than close a little.
-    #[must_use]
+    /// Like [`ready`](Self::ready), with both muscles known: for behaviours, which do more than close a
+    /// little.
     pub fn all_ready(&self, config: &Config) -> bool {
         self.feels() && (config.no_wearer || self.gate.is_certain(&config.gate))
     }
@@ -260,7 +238,6 @@ impl Senses {
             && (self.films_usable || self.forces.is_some() || self.head.is_usable())
     }
 
-    /// Computes `grip` and `unloaded` once a tick, since many ask for them.
     fn weigh(&mut self, config: &Config) {
         let loaded_mn = config.friction.loaded_mn;
         (self.grip, self.unloaded) = match self.forces {
@@ -281,7 +258,6 @@ impl Senses {
         }
     }
 
-    /// Takes the samples of the first `films` films.
     #[inline(always)]
     fn condition_pvdf(
         &mut self,
@@ -300,10 +276,10 @@ impl Senses {
         }
     }
 
-    /// Listens for steady sliding, and looks for cut wires of films and select lines. Call it once a slow frame, always after the same tick.
+    /// Steady sliding, cut wires and select lines. Call it once a slow frame, always after the same tick.
     #[inline(never)]
     pub fn think(&mut self, config: &Config, samples: &LastSamples, journal: &mut Journal) {
-        // A muscle's spectrum, twice in 64 cycles, leaves no time for the quadrants as well.
+        // A muscle's spectrum, twice in 64 cycles, leaves no time for the quadrants.
         if !self.muscles().has_window() {
             self.blame(config, journal);
         }
@@ -313,16 +289,13 @@ impl Senses {
         self.detector.slow(&Hand { forces, wearer: self.gate.is_active(), striking: self.striking });
     }
 
-    /// Gives the head its sample. The films get a healthy silent film in its place: the middle of
-    /// the range with one count of dither, so that it does not look frozen.
-    ///
-    /// The films' part is compiled twice, here and for twelve films, which then cost nothing more. Most hands have no head.
+    /// The films get a healthy silent film in the head's place: mid-range with one count of dither, so that
+    /// it does not look frozen. Compiled apart, so that twelve films cost nothing more.
     #[cold]
     #[inline(never)]
     fn condition_head(&mut self, config: &Config, frame: &Frame, journal: &mut Journal) {
         let is_fitted = Role::of(HEAD, config.head.fitted) == Role::Photoelastic;
         if self.head_is_fitted != is_fitted {
-            // A head takes a film's place, or gives it back: neither has heard the jump.
             self.head_is_fitted = is_fitted;
             self.head = Head::default();
             self.detector.forget(HEAD - PVDF);
@@ -338,7 +311,6 @@ impl Senses {
         self.condition_pvdf(config, &pvdf, films, journal);
     }
 
-    /// Computes the head's force, once a slow frame, after the quadrants'.
     #[inline(never)]
     fn track(&mut self, config: &Config) {
         let force_mn = self.forces.filter(|_| !self.pressed).map(|forces| forces.load_mn);
@@ -349,7 +321,6 @@ impl Senses {
         }
     }
 
-    /// Reports films whose masking changed.
     #[inline(never)]
     fn mask(&self, changed: u16, journal: &mut Journal) {
         for film in (0..PVDF_COUNT).filter(|film| changed >> film & 1 != 0) {
@@ -382,7 +353,6 @@ impl Senses {
         }
     }
 
-    /// The frame of this channel was lost.
     fn miss(&mut self, channel: usize, journal: &mut Journal) {
         match channel {
             FSR..ARRAY => {
@@ -413,7 +383,6 @@ impl Senses {
     }
 
     fn capabilities(&mut self, journal: &mut Journal) {
-        // Before every sensor has been read once, none is missed.
         if self.frames_seen < WARM_UP_FRAMES {
             return;
         }

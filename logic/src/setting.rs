@@ -1,80 +1,51 @@
-//! Settings: every number of the fingertip that a person may choose, one row each.
-//!
-//! A row stands beside the field that it fills, in the `settings.rs` of its sense. From it come the setting's number on the wire
-//! and in flash, its name, range and default, how the field's unit is converted, and its line in `docs/settings.md`. One
-//! more setting is a field with its row, and the page printed again.
+//! Settings: one row each beside its field, in the `settings.rs` of its sense. Number on the wire and in
+//! flash, name, range, default, conversion and the line in `docs/settings.md` come from it.
 
 use core::ops::RangeInclusive;
 
 use tenax_hal_shim::channel::{FRAME_HZ, frames, mv_from_sample, sample_from_mv};
 use tenax_hal_shim::detector::{DetectorId, DetectorSet};
 
-/// Description of a setting.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Row {
-    /// The setting.
     pub id: SettingId,
-    /// Its name on the command line and in scene files. It ends with the unit.
     pub name: &'static str,
-    /// Its unit, for a person.
     pub unit: &'static str,
-    /// The lowest value that is accepted.
+    /// Physically sensible values; what the line may do is limited by consent and by the force ceiling.
     pub min: i32,
-    /// The highest value. No mix within these ranges drops or crushes an object or disables detection (`bench/tests/mixes.rs`).
     pub max: i32,
-    /// The lowest value on a trusted line.
-    pub min_if_trusted: i32,
-    /// The highest value on a trusted line: it may disable a detector.
-    pub max_if_trusted: i32,
-    /// Its default.
     pub default: i32,
-    /// Its meaning, for people.
     pub meaning: &'static str,
 }
 
 impl Row {
-    /// The values that are accepted on a line that is not trusted.
     pub const fn range(&self) -> RangeInclusive<i32> {
         self.min..=self.max
     }
-
-    /// The values that are accepted, by whether the line is trusted.
-    #[must_use]
-    pub const fn range_in_force(&self, line_trusted: bool) -> RangeInclusive<i32> {
-        if line_trusted { self.min_if_trusted..=self.max_if_trusted } else { self.range() }
-    }
 }
 
-/// A setting, by its number on the wire and in flash. Numbers are never given twice.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct SettingId(u8);
 
 impl SettingId {
-    /// For a row.
     pub(crate) const fn numbered(number: u8) -> Self {
         Self(number)
     }
 
-    /// Its number on the wire and in flash.
-    #[must_use]
     pub const fn number(self) -> u8 {
         self.0
     }
 }
 
-/// A part of the configuration that has settings.
 pub(crate) trait Settings {
-    /// The value of a setting, in its unit; None if it belongs to another part.
+    /// None if the setting belongs to another part.
     fn value(&self, id: SettingId) -> Option<i32>;
-    /// Changes a setting; does nothing if it belongs to another part.
     fn put(&mut self, id: SettingId, value: i32);
 }
 
-/// How a setting's value becomes a field, and back.
 pub(crate) trait Unit<Field> {
-    /// The field from an accepted value, 0 to 2^24.
+    /// `value`: 0 to 2^24.
     fn field(value: i32) -> Field;
-    /// The setting's value from a field, as it was set.
     fn value(field: Field) -> i32;
 }
 
@@ -84,15 +55,10 @@ pub(crate) struct Mv;
 pub(crate) struct MvQ4;
 /// Milliseconds, kept as frames.
 pub(crate) struct Ms;
-/// A plain number: setting and field have the same unit.
 pub(crate) struct Number;
-/// 0 or 1.
 pub(crate) struct Flag;
-/// A set of detectors, a bit each in the order of [`MASKED`].
 pub(crate) struct Mask;
 
-/// The detectors of a [`Mask`], the lowest bit first. Where the line is not trusted only the first three can be named: a worn hand is
-/// never deaf.
 const MASKED: [DetectorId; 5] =
     [DetectorId::Hebbian, DetectorId::Mlp, DetectorId::Photoelastic, DetectorId::S2, DetectorId::S1];
 
@@ -169,10 +135,9 @@ impl Unit<bool> for Flag {
     }
 }
 
-/// Makes the rows of a part of the configuration, and each setting's way into its field and back.
 macro_rules! settings {
     ($config:ident: $($(#[doc = $meaning:literal])+ $number:literal $id:ident $name:literal $unit:literal
-        [$min:literal, $max:literal $(, trusted $low:literal, $high:literal)?] = $default:literal
+        [$min:literal, $max:literal] = $default:literal
         => $kind:ident($($field:tt)+);)+) => {
         impl $crate::setting::SettingId {
             $($(#[doc = $meaning])+ #[allow(non_upper_case_globals, reason = "read as the variants of an enum")]
@@ -180,15 +145,12 @@ macro_rules! settings {
         }
 
         impl $config {
-            /// The rows of its settings.
             pub(crate) const ROWS: &'static [$crate::setting::Row] = &[$($crate::setting::Row {
                 id: $crate::setting::SettingId::$id,
                 name: $name,
                 unit: $unit,
                 min: $min,
                 max: $max,
-                min_if_trusted: $crate::setting::settings!(@trusted $min $(, $low)?),
-                max_if_trusted: $crate::setting::settings!(@trusted $max $(, $high)?),
                 default: $default,
                 meaning: concat!($($meaning),+).trim_ascii(),
             }),+];
@@ -212,7 +174,5 @@ macro_rules! settings {
             }
         }
     };
-    (@trusted $end:literal) => { $end };
-    (@trusted $end:literal, $trusted:literal) => { $trusted };
 }
 pub(crate) use settings;

@@ -1,28 +1,21 @@
-//! Storage through power cuts: a log of records in two sectors of flash.
+//! Storage through power cuts: a log of records in two sectors of flash; the newest whole one of each kind
+//! counts.
 //!
-//! Records are appended to one sector, word after word ([`record`]); the newest whole one of each kind counts. Nothing is
-//! erased while the hand works, because an erase stalls the core for a second or two. [`open`] does it
-//! at boot: it finds the records that count, and when the sector is half full it erases the other one, copies them
-//! there, and appends there from then on. The old sector is left as it is until its turn comes again, so it is
-//! a second copy of everything until then. A boot after a reset postpones that ([`Erase`]): something may be held.
-//!
-//! A power cut at any instant leaves, of each kind, the record before or the record after, whole. Why:
+//! Nothing is erased while the hand works, because an erase stalls the core for a second or two. [`open`]
+//! does it at boot: when a sector is half full it erases the other one and copies the records that count.
+//! After a reset it waits ([`Erase`]). A power cut at any instant leaves, of each kind, the record before or
+//! after, whole:
 //! - a record counts only with its CRC and, programmed after it, its commit word;
-//! - only a record that counts is skipped by its length, so a tag that was cut hides nothing that was appended later;
-//! - the records of a session begin with a word of zeros: the first blank word may be one that a power cut left half
-//!   programmed, and would not read blank the next time;
+//! - only a record that counts is skipped by its length, so a tag that was cut hides nothing that was
+//!   appended later;
+//! - a session begins with a word of zeros: the first blank word may be half programmed, and would not read
+//!   blank the next time;
 //! - only the sector that holds nothing that counts is ever erased;
-//! - a copy has the sequence number of the original, so half a copied sector is never newer than the original, and its
-//!   opening words, which break the tie, are programmed last.
+//! - a copy has the sequence number of the original, and its opening words, which break the tie, are
+//!   programmed last.
 //!
-//! # Wear
-//! A record takes its payload and [`OVERHEAD_WORDS`](record::OVERHEAD_WORDS) words. Of 128 KiB sectors at least half is
-//! filled between two erases, so the network's 79 words are saved 204 times for one erase, settings (4 words and one
-//! for each that is not at its default, 33 at most) 490 times or more. The chip's 10 000 erases
-//! of each of two sectors (DS10314, flash memory endurance) are 4.1 million saves of the network: eight years of one a
-//! minute, day and night.
-//!
-//! The crate `sequential-storage` does most of this, but erases whenever a page is full.
+//! Wear: of 128 KiB sectors at least half is filled between two erases, so 10 000 erases of each sector
+//! (DS10314) are 4.1 million saves of the network.
 
 pub mod keeper;
 pub mod payload;
@@ -35,66 +28,54 @@ use tenax_hal_shim::words::Kept;
 use record::{MARK, Saving, Tag};
 use sector::{Entry, OPENING_WORDS, Survey};
 
-/// The log: its sector and the place of the next record.
 #[derive(Clone, Debug)]
 pub struct Log {
     sector: Sector,
     end: usize,
-    /// Words that records of a session may fill: the rest is for [`open`].
     limit: usize,
     next_sequence: u32,
-    /// Whether the first word of this session was programmed.
     marked: bool,
-    /// The flash failed at boot: nothing more is saved before the next.
     failed: bool,
 }
 
-/// Why a record is not saved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refused {
-    /// The sector is full. The next boot makes room.
     Full,
-    /// The flash failed at boot.
     Failed,
-    /// Longer than 255 words, or not whole words.
     Length,
 }
 
-/// Whether [`open`] may erase a sector, which takes a second or two in which the hand cannot move.
+/// An erase takes a second or two in which the hand cannot move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Erase {
-    /// The hand has just been switched on.
     Allowed,
     /// The hand was reset and may hold something: only the room that is left is used.
     Postponed,
 }
 
-/// The records that [`open`] found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Found {
     newest: [Option<Entry>; Kept::ALL.len()],
     damaged: [bool; Kept::ALL.len()],
-    /// How often a sector has been erased to make room, less one: each sector has had half of it.
+    /// Erases of a sector to make room, less one: each sector has had half of it.
     pub generation: u32,
 }
 
 impl Found {
-    /// The newest whole record of `kept`, read into `buffer`. None if there is none, or it is longer than `buffer`.
+    /// None if there is none, or it is longer than `buffer`.
     pub fn read<'a>(&self, area: &impl FlashArea, kept: Kept, buffer: &'a mut [u8]) -> Option<&'a [u8]> {
         let entry = self.newest[kept as usize]?;
         entry.read(area, buffer)
     }
 
-    /// Whether a later record of `kept` than the one that counts is damaged, or was not finished.
-    #[must_use]
+    /// A later record than the one that counts is damaged, or was not finished.
     pub const fn is_damaged(&self, kept: Kept) -> bool {
         self.damaged[kept as usize]
     }
 }
 
-/// Finds the records that count and makes room. Call it at boot, before anything moves: an erase stalls the core for seconds.
-///
-/// If the flash fails, nothing more is saved, but the records that were found stay valid.
+/// Finds the records that count and makes room. Call it at boot, before anything moves. If the flash fails,
+/// nothing more is saved, but the records that were found stay valid.
 pub fn open(area: &mut impl FlashArea, erase: Erase) -> (Log, Found) {
     let [a, b] = Sector::BOTH.map(|sector| Survey::of(area, sector));
     let (active, stale) = if b.rank() > a.rank() { (b, a) } else { (a, b) };
@@ -122,11 +103,8 @@ pub fn open(area: &mut impl FlashArea, erase: Erase) -> (Log, Found) {
 }
 
 impl Log {
-    /// Begins to save a record; its words are programmed one by one by [`Saving::step`]. Its place is taken from now on,
-    /// whether it is finished or not.
-    ///
-    /// # Errors
-    /// Why it is not saved.
+    /// Words are programmed one by one by [`Saving::step`]. The place is taken from now on, whether the
+    /// record is finished or not.
     pub fn begin<'a>(&mut self, kept: Kept, payload: &'a [u8]) -> Result<Saving<'a>, Refused> {
         if self.failed {
             return Err(Refused::Failed);
@@ -147,17 +125,14 @@ impl Log {
         Ok(saving)
     }
 
-    /// Words that the next record takes beside its own: the first of a session has a mark before it.
     pub const fn mark_words(&self) -> usize {
         !self.marked as usize
     }
 
-    /// Words that can still be filled before the next boot.
     pub const fn free_words(&self) -> usize {
         if self.failed { 0 } else { self.limit.saturating_sub(self.end + self.mark_words()) }
     }
 
-    /// Sees to it that the active sector is opened, holds everything that counts, and has room for a day.
     fn make_room(
         &mut self,
         area: &mut impl FlashArea,
@@ -209,7 +184,6 @@ impl Log {
         Ok(())
     }
 
-    /// Copies a record to the end of this log, word by word; it is found there from now on.
     fn copy(&mut self, area: &mut impl FlashArea, entry: &mut Entry) -> Result<(), FlashFailed> {
         for n in 0..entry.tag().record_words() {
             // The tag as it was meant: a bit of it may read wrong.
@@ -222,7 +196,6 @@ impl Log {
     }
 }
 
-/// Programs a word and reads it back.
 fn program(area: &mut impl FlashArea, sector: Sector, word: usize, value: u32) -> Result<(), FlashFailed> {
     area.program(sector, word, value)?;
     (area.read(sector, word) == value).then_some(()).ok_or(FlashFailed)

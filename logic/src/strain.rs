@@ -1,23 +1,19 @@
-//! The strain gauges: reading less zero is load.
-//!
-//! A foil gauge in silicone is off by as much as a light grasp and drifts by some mV a minute. The FSR tells whether the
-//! finger is unloaded; while it is, each gauge's zero follows
-//! its readings. In a grasp the zeros are held.
+//! Strain gauges: reading less zero is load. A foil gauge in silicone is off by as much as a light grasp and
+//! drifts by some mV a minute, so its zero follows the readings while the finger is unloaded, and is held in
+//! a grasp.
 
 use tenax_hal_shim::channel::{CHANNELS, SLOW_HZ, STRAIN, STRAIN_COUNT, sample_from_mv};
 use tenax_hal_shim::words::Reason;
 
 use crate::health::{Change, Limits, SensorHealth};
 
-/// Fraction bits of a load.
 const Q: u32 = 4;
-/// The zero follows over about `2^FOLLOW_SHIFT` readings: 0.8 s.
+/// Readings over which the zero follows, log2: 0.8 s.
 const FOLLOW_SHIFT: u32 = 6;
 
 static LIMITS: Limits = Limits::of(&CHANNELS[STRAIN], SLOW_HZ);
 const REST: i32 = (sample_from_mv(CHANNELS[STRAIN].rest_mv) as i32) << (Q + FOLLOW_SHIFT);
 
-/// One gauge.
 #[derive(Clone, Debug)]
 struct Gauge {
     health: SensorHealth,
@@ -26,31 +22,25 @@ struct Gauge {
     load: i32,
 }
 
-/// The twelve gauges.
 #[derive(Clone, Debug)]
 pub struct Gauges([Gauge; STRAIN_COUNT]);
 
 impl Default for Gauges {
-    /// Every zero at the front end's rest voltage.
     fn default() -> Self {
         Self(core::array::from_fn(|_| Gauge { health: SensorHealth::default(), zero: REST, load: 0 }))
     }
 }
 
 impl Gauges {
-    /// Takes a 14-bit reading of a gauge (0 to 11). `unloaded`: the finger is known to touch nothing. Gives a change of its health.
+    /// 14-bit reading of gauge 0 to 11. `unloaded`: the finger is known to touch nothing.
     pub fn read(&mut self, gauge: usize, sample: u16, unloaded: bool) -> Option<Change> {
         let gauge = self.0.get_mut(gauge)?;
-        let (reading, change) = if gauge.health.is_plain(&LIMITS, sample) {
-            (Ok(sample), None)
-        } else {
-            gauge.health.take(&LIMITS, sample)
-        };
+        let (reading, change) = gauge.health.read(&LIMITS, sample);
         gauge.set(reading, unloaded);
         change
     }
 
-    /// Takes the last readings as zeros. The caller makes sure that nothing is held.
+    /// The caller makes sure that nothing is held.
     pub fn zero(&mut self) {
         for gauge in &mut self.0 {
             gauge.zero += gauge.load << FOLLOW_SHIFT;
@@ -58,13 +48,12 @@ impl Gauges {
         }
     }
 
-    /// One of the [`loads`](Self::loads), 1/16 of a sample; None for a gauge above 11.
-    #[must_use]
+    /// 1/16 of a sample; None for a gauge above 11.
     pub fn load(&self, gauge: usize) -> Option<i32> {
         self.0.get(gauge).map(|gauge| gauge.load)
     }
 
-    /// Loads, 1/16 of a sample, positive or negative; 0 of a lost gauge.
+    /// 1/16 of a sample, positive or negative; 0 of a lost gauge.
     pub fn loads(&self) -> [i32; STRAIN_COUNT] {
         core::array::from_fn(|n| self.0[n].load)
     }

@@ -1,5 +1,5 @@
-//! Messages on request ([`Down::Stream`](tenax_hal_shim::wire::Down::Stream)): the samples of every frame, and every sensor's
-//! reading. No decision depends on it.
+//! Messages on request ([`Down::Stream`](tenax_hal_shim::wire::Down::Stream)): samples of every frame, and
+//! sensor readings. No decision depends on it.
 
 use tenax_hal_shim::channel::{FRAME_HZ, FRAMES_PER_SLOW_FRAME, SWITCH_INPUTS};
 use tenax_hal_shim::frame::Frame;
@@ -7,47 +7,41 @@ use tenax_hal_shim::wire::{FRAMES_PER_RAW, Raw};
 
 const _: () = assert!((FRAMES_PER_SLOW_FRAME as usize).is_multiple_of(FRAMES_PER_RAW));
 
-/// Without end, until another request.
 const EVER: u32 = u32::MAX;
 
-/// The slot whose tick sends the readings: nothing long is decided or sent in it.
+/// Nothing long is decided or sent in this slot.
 pub const SENSES_SLOT: u8 = 2;
 
-/// The requests, and the frames collected for the next message.
 #[derive(Clone, Debug, Default)]
 pub struct Stream {
-    /// Sequence number of the frame to come.
     next: u32,
     raw: bool,
     senses: bool,
-    /// Frames for which it goes on.
     left: u32,
     gathered: Raw,
-    /// The five before, which are sent in the tick after their last: that one may have ended a slow frame, and two long
-    /// messages in one tick last into the next frame.
+    /// Sent in the tick after its last frame: that one may have ended a slow frame, and two long messages in
+    /// one tick last into the next.
     whole: Raw,
     is_whole: bool,
     raw_is_ready: bool,
     senses_are_due: bool,
-    /// The first frames of a message went by before anybody asked.
+    /// The first frames of a message went by before the request.
     is_torn: bool,
 }
 
 impl Stream {
-    /// Streams frames from the first one on, without end.
     pub const fn start(&mut self) {
         self.raw = true;
         self.left = EVER;
     }
 
-    /// Takes a request for so many seconds; 0 ends it.
+    /// `hold_s` 0 ends it.
     pub fn ask(&mut self, raw: bool, senses: bool, hold_s: u16) {
         self.is_torn |= raw && !self.raw && !(self.next as usize).is_multiple_of(FRAMES_PER_RAW);
         self.left = u32::from(hold_s) * FRAME_HZ;
         (self.raw, self.senses) = (raw && hold_s > 0, senses && hold_s > 0);
     }
 
-    /// Takes a frame after its tick.
     pub fn record(&mut self, frame: &Frame) {
         self.next = frame.sequence.wrapping_add(1);
         if self.left > 0 || self.is_whole {
@@ -65,7 +59,6 @@ impl Stream {
                 self.is_whole = !core::mem::take(&mut self.is_torn);
             }
         }
-        // Before all slots have come once, some readings are none.
         let all_came = frame.sequence >= SWITCH_INPUTS.into();
         self.senses_are_due = self.senses && frame.slot() == SENSES_SLOT && all_came;
         if self.left != EVER && self.left > 0 {
@@ -75,32 +68,26 @@ impl Stream {
         }
     }
 
-    /// Sequence number of the frame to come.
     pub const fn next(&self) -> u32 {
         self.next
     }
 
-    /// Whether frames are streamed.
     pub const fn is_raw(&self) -> bool {
         self.raw
     }
 
-    /// Whether a message of frames is full.
     pub const fn has_raw(&self) -> bool {
         self.raw_is_ready
     }
 
-    /// The message of frames, if it is full.
     pub fn take_raw(&mut self) -> Option<Raw> {
         core::mem::take(&mut self.raw_is_ready).then_some(self.whole)
     }
 
-    /// Whether the sensors' readings are to be sent.
     pub const fn wants_senses(&self) -> bool {
         self.senses_are_due
     }
 
-    /// Notes that they were sent.
     pub const fn gave_senses(&mut self) {
         self.senses_are_due = false;
     }
@@ -131,25 +118,11 @@ mod tests {
     }
 
     #[test]
-    fn no_reading_is_sent_before_every_channel_was_read_once() {
-        let mut stream = Stream::default();
-        stream.ask(false, true, 1);
-        let due: Vec<u32> = (0..60)
-            .filter(|&sequence| {
-                stream.record(&Frame::lost(sequence));
-                stream.wants_senses()
-            })
-            .collect();
-        assert_eq!(due, [27, 52]);
-    }
-
-    #[test]
     fn it_ends_when_nobody_asks_any_more_unless_it_is_for_ever() {
         let mut stream = Stream::default();
         stream.ask(true, true, 1);
         assert_eq!(firsts(&mut stream, 0..10 * FRAME_HZ).len(), FRAME_HZ as usize / FRAMES_PER_RAW);
         stream.start();
-        // The last five are sent in the tick after them.
         let seen = firsts(&mut stream, 0..10 * FRAME_HZ + 1).len();
         assert_eq!(seen, 10 * FRAME_HZ as usize / FRAMES_PER_RAW);
         stream.ask(true, true, 0);

@@ -12,10 +12,9 @@ use crate::schedule::{FRAME_S, STEP_S};
 const EDGE: f64 = 0.02;
 /// The part of its speed at which the gripper is taken to close: drives are whole per mille, forces one frame old.
 const SPEED_PART: f64 = 0.8;
-/// So much earlier than dead times ask, frames.
 const EARLY_FRAMES: usize = 4;
 
-/// What each finger has to press at each frame of a scene, N, once it touches something.
+/// Force of each finger at each frame of a scene, N, once it touches something.
 ///
 /// The demand is what the object needs while it moves with the hand; the plan closes as late as gripper speed and dead time
 /// let it meet every demand to come.
@@ -26,7 +25,7 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// Of a scene. None where there is nothing to grasp.
+    /// None where there is nothing to grasp.
     pub fn of(scene: &SceneFile) -> Option<Self> {
         let needed_n = needed_n(scene)?;
         let gripper = &scene.gripper;
@@ -47,12 +46,10 @@ impl Plan {
         Some(Self { target_n, most_n: f64::INFINITY })
     }
 
-    /// The same with no more than so much force, N.
     pub fn at_most(self, most_n: f64) -> Self {
         Self { most_n, ..self }
     }
 
-    /// At an instant, N. `stops_n` is what stops the object where it slides.
     pub fn target_n(&self, t_s: f64, stops_n: Option<f64>) -> f64 {
         let frame = (t_s * f64::from(FRAME_HZ)) as usize;
         let planned_n = self.target_n.get(frame).copied().map_or(0.0, f64::from);
@@ -60,7 +57,6 @@ impl Plan {
     }
 }
 
-/// What the object needs in each frame while it moves with the hand, N: it is held firmly and neither breaks nor yields.
 fn needed_n(scene: &SceneFile) -> Option<Vec<f32>> {
     let mut object = scene.object.as_ref()?.get_ref().clone();
     (object.crush_n, object.break_n) = (None, None);
@@ -101,17 +97,5 @@ mod tests {
         assert!((1.0..1.03).contains(&(at(41.99) / needed_n(0.25))), "{} N", at(41.99));
         assert_eq!(plan.clone().at_most(5.0).target_n(41.99, None), 5.0);
         assert_eq!(plan.at_most(50.0).target_n(41.99, Some(20.0)), 20.0);
-    }
-
-    #[test]
-    fn it_knows_pulls() {
-        let plan = Plan::of(&scene("push-gentle")).unwrap();
-        let before_n = plan.target_n(6.0, None);
-        assert!(plan.target_n(13.3, None) > 5.0 * before_n, "{before_n} N");
-    }
-
-    #[test]
-    fn nothing_is_planned_for_a_stroke() {
-        assert_eq!(Plan::of(&scene("explore-wood")), None);
     }
 }

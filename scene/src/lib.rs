@@ -1,9 +1,7 @@
-//! The smallest worlds in which the fingertip can be tried: an object, a gripper, a wearer, and what the sensors make
-//! of them. No detector lives here.
+//! Worlds in which the fingertip is tried: an object, a gripper, a wearer, and what the sensors make of them.
 //!
-//! A [`SceneFile`] is parsed from TOML, a [`World`] is built from it and a seed, and whoever owns a fingertip steps the
-//! world one scan at a time through [`plant::Plant`]. The same file and seed give the same bytes, on every machine and
-//! in every build: noise is ChaCha8, and the functions that platforms disagree about are `libm`'s, in plain Rust.
+//! A [`SceneFile`] is parsed from TOML, a [`World`] is built from it and a seed and stepped one scan at a time through
+//! [`plant::Plant`]. The same file and seed give the same bytes on every machine: noise is ChaCha8, functions are `libm`'s.
 //!
 //! ```
 //! use tenax_hal_shim::motor::MotorDrive;
@@ -21,15 +19,14 @@
 //! # Ok::<(), tenax_scene::SceneError>(())
 //! ```
 //!
-//! | module | one type with one step function for each of |
+//! | module | |
 //! |---|---|
 //! | [`physics`] | contact at three levels, gripper, grasped object, stroked surface, hand, wearer |
-//! | [`sensor`] | PVDF, strain, FSR, force array, myoelectric, camera, photoelastic head, opening, motor current, and the faults of all of them |
-//! | [`picture`] | what a camera behind a clear skin sees, drawn pixel by pixel |
-//! | [`fingers`] | several fingertips around one object |
-//! | [`act`] | what a person at the bench does meanwhile |
+//! | [`sensor`] | sensors, cameras and their faults |
+//! | [`picture`] | pictures of a camera behind a clear skin |
+//! | [`act`] | acts of a person at the bench |
 //! | [`bound`] | the least force that holds, planned ahead |
-//! | [`truth`] | nothing of the world: it writes down what really happened |
+//! | [`truth`] | a log of what happened |
 #![forbid(unsafe_code)]
 
 pub mod act;

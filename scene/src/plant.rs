@@ -1,4 +1,4 @@
-//! What a board sees of a world: voltages on its pins, and a motor that moves something.
+//! A world as a board sees it: voltages at its pins, and a motor.
 
 use tenax_hal_shim::channel::{CHANNELS, CODE_MAX, COUNT, REFERENCE_MV};
 use tenax_hal_shim::frame::{Frame, scan_of_pins};
@@ -13,7 +13,6 @@ use crate::act::Act;
 pub struct Pins(pub [f64; COUNT]);
 
 impl Default for Pins {
-    /// Every channel at rest.
     fn default() -> Self {
         Self(CHANNELS.map(|channel| f64::from(channel.rest_mv) / 1e3))
     }
@@ -22,28 +21,16 @@ impl Default for Pins {
 impl Pins {
     /// The codes that the converter reads, 12 bits, rounded down as it does, clipped to its range. NaN reads as 0.
     pub fn codes(&self) -> [u16; COUNT] {
-        const MAX: f64 = CODE_MAX as f64;
-        // Above this there is no room for a fraction: the sum's lowest bits are the nearest whole number.
-        const WHOLE: f64 = 4_503_599_627_370_496.0;
-        // Comparisons and sums only, so that the compiler takes several channels in one instruction.
-        self.0.map(|volts| {
-            let code = volts * 1e3 / f64::from(REFERENCE_MV) * (MAX + 1.0);
-            // No number is greater than NaN, and so NaN is 0.
-            let code = if code > 0.0 { code } else { 0.0 };
-            let code = if code < MAX { code } else { MAX };
-            let nearest = code + WHOLE;
-            let down = if nearest - WHOLE > code { 1.0 } else { 0.0 };
-            (nearest - down).to_bits() as u16
-        })
+        let code = |volts: f64| volts * 1e3 / f64::from(REFERENCE_MV) * (f64::from(CODE_MAX) + 1.0);
+        // A cast rounds towards 0 and clips.
+        self.0.map(|volts| (code(volts) as u16).min(CODE_MAX))
     }
 }
 
 /// The wearer to whom the board was calibrated before the start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Calibrated {
-    /// Whose envelopes are these, mV above the live zero, flexor first.
     Levels { rest_mv: [u16; 2], close_mv: [u16; 2], open_mv: [u16; 2] },
-    /// Whose calibration was kept in these words.
     Words([i32; 10]),
 }
 
@@ -51,20 +38,19 @@ pub enum Calibrated {
 ///
 /// One that is put around another names it as `within`, and says itself only what is different.
 pub trait Plant: Send {
-    /// The plant that this one is put around, if it is.
+    /// The plant that this one is put around; every method below that is not overridden asks it.
     fn within(&self) -> Option<&dyn Plant> {
         None
     }
 
-    /// The same, to go on with.
     fn within_mut(&mut self) -> Option<&mut dyn Plant> {
         None
     }
 
-    /// Goes on by one scan period (125 us) under `drive` and gives the voltages at the pins at its end.
+    /// Goes on by one scan (125 us) under `drive`; voltages at the pins at its end.
     fn scan(&mut self, drive: MotorDrive) -> &Pins;
 
-    /// Goes on by a frame: what the board samples of it, and what came down the line meanwhile.
+    /// Goes on by a frame: its samples, and the commands that came down the line meanwhile.
     fn frame(&mut self, sequence: u32, drive: MotorDrive) -> (Frame, Vec<Down>) {
         let select = Frame::lost(sequence).select();
         let mut commands = Vec::new();
@@ -76,85 +62,82 @@ pub trait Plant: Send {
         (Frame::from_scans(sequence, &scans), commands)
     }
 
-    /// Commands that somebody sends over the serial line at this instant.
+    /// Commands that come down the serial line at this instant.
     fn commands(&mut self) -> Vec<Down> {
         self.within_mut().map_or_else(Vec::new, Plant::commands)
     }
 
-    /// Bytes that somebody sends down the serial line at this instant, whatever they are.
+    /// Raw bytes that come down the serial line at this instant.
     fn line_bytes(&mut self) -> Vec<u8> {
         self.within_mut().map_or_else(Vec::new, Plant::line_bytes)
     }
 
-    /// The board drives its vibration motor so, from now on. A recording takes no notice.
+    /// Drive of the vibration motor from now on. A recording ignores it.
     fn vibrate(&mut self, duty: Duty) {
         if let Some(within) = self.within_mut() {
             within.vibrate(duty);
         }
     }
 
-    /// Somebody at the bench does something, from now on. A recording takes no notice.
+    /// Act of a person at the bench, from now on. A recording ignores it.
     fn act(&mut self, act: Act) {
         if let Some(within) = self.within_mut() {
             within.act(act);
         }
     }
 
-    /// Whether the board trusts whoever sends them (the setting `line-trusted-flag`, kept in its flash from before).
+    /// Setting `line-trusted-flag`, kept in the flash from before.
     fn trusts_line(&self) -> bool {
         self.within().is_some_and(Plant::trusts_line)
     }
 
-    /// Whether the board streams its frames from the start (the setting `stream-at-start-flag`, kept in its flash from before).
+    /// Setting `stream-at-start-flag`, kept in the flash from before.
     fn streams_at_start(&self) -> bool {
         self.within().is_some_and(Plant::streams_at_start)
     }
 
-    /// What the board's flash has kept from before.
+    /// Records that the flash has kept from before.
     fn kept(&self) -> Vec<(Kept, Vec<u8>)> {
         self.within().map_or_else(Vec::new, Plant::kept)
     }
 
-    /// The board has saved this.
     fn keep(&mut self, kept: Kept, payload: &[u8]) {
         if let Some(within) = self.within_mut() {
             within.keep(kept, payload);
         }
     }
 
-    /// Whether the board is reset at this instant: its run is over.
+    /// True if the board is reset at this instant: its run is over.
     fn resets(&self) -> bool {
         self.within().is_some_and(Plant::resets)
     }
 
-    /// Whether somebody holds the board's button down at this instant.
+    /// True while the board's button is held down.
     fn button(&self) -> bool {
         self.within().is_some_and(Plant::button)
     }
 
-    /// How the bound drives the motor for the next frame: it closes as its plan of the whole scene says, and stops what slides. None
-    /// where nothing has to be closed, or nothing is planned.
+    /// Drive of the bound for the next frame, by its plan of the whole scene. None where nothing has to be closed, or nothing is planned.
     fn planned(&self) -> Option<MotorDrive> {
         self.within()?.planned()
     }
 
-    /// How the motor has to be driven for the next frame so that each finger comes to press what it touches with `target_n`, and
-    /// no more. None if it will anyway.
+    /// Drive for the next frame with which each finger comes to press with `target_n` and no more. None if it will anyway.
     fn closing_to(&self, target_n: f64) -> Option<MotorDrive> {
         self.within()?.closing_to(target_n)
     }
 
-    /// Whether the object moves relative to the finger at this instant.
+    /// True while the object moves relative to the finger.
     fn slipping(&self) -> bool {
         self.within().is_some_and(Plant::slipping)
     }
 
-    /// The wearer to whom the board was calibrated before the start, if to any.
+    /// Wearer to whom the board was calibrated before the start.
     fn calibrated(&self) -> Option<Calibrated> {
         self.within()?.calibrated()
     }
 
-    /// How long it lasts, s. A plant by itself says it.
+    /// Length, s. The innermost plant says it.
     fn duration_s(&self) -> f64 {
         self.within().map_or(0.0, Plant::duration_s)
     }
@@ -164,7 +147,6 @@ pub trait Plant: Send {
 mod tests {
     use super::*;
 
-    /// Says everything that a plant may say.
     struct Outspoken(Pins);
 
     impl Plant for Outspoken {
@@ -176,44 +158,15 @@ mod tests {
             vec![Down::Ping]
         }
 
-        fn line_bytes(&mut self) -> Vec<u8> {
-            vec![7]
-        }
-
-        fn trusts_line(&self) -> bool {
-            true
-        }
-
-        fn streams_at_start(&self) -> bool {
-            true
-        }
-
         fn button(&self) -> bool {
-            true
-        }
-
-        fn planned(&self) -> Option<MotorDrive> {
-            Some(MotorDrive::Coast)
-        }
-
-        fn closing_to(&self, _target_n: f64) -> Option<MotorDrive> {
-            Some(MotorDrive::Coast)
-        }
-
-        fn slipping(&self) -> bool {
             true
         }
 
         fn calibrated(&self) -> Option<Calibrated> {
             Some(Calibrated::Words([3; 10]))
         }
-
-        fn duration_s(&self) -> f64 {
-            1.0
-        }
     }
 
-    /// Says nothing by itself.
     struct Around<P>(P);
 
     impl<P: Plant> Plant for Around<P> {
@@ -231,30 +184,22 @@ mod tests {
     }
 
     #[test]
-    fn what_a_plant_around_another_does_not_say_the_other_says() {
-        let said = |plant: &mut dyn Plant| {
-            let flags = [plant.trusts_line(), plant.streams_at_start(), plant.button(), plant.slipping()];
-            let down = (plant.commands(), plant.line_bytes());
-            (flags, down, plant.planned(), plant.closing_to(1.0), plant.calibrated())
-        };
+    fn a_plant_around_another_answers_as_the_innermost() {
         let mut around = Around(Around(Outspoken(Pins::default())));
-        assert_eq!(said(&mut around), said(&mut Outspoken(Pins::default())));
-        assert!(around.button() && around.calibrated().is_some(), "what it says is not what nobody says");
+        assert!(around.button() && around.calibrated().is_some() && !around.trusts_line());
+        assert_eq!(around.frame(0, MotorDrive::Coast).1, [Down::Ping; 4]);
     }
 
     #[test]
     fn codes_are_rounded_down_and_clipped() {
         let lsb_v = f64::from(REFERENCE_MV) / 1e3 / (f64::from(CODE_MAX) + 1.0);
-        let slowly = |volts: f64| {
-            let code = volts * 1e3 / f64::from(REFERENCE_MV) * (f64::from(CODE_MAX) + 1.0);
-            if code.is_nan() { 0 } else { code.floor().clamp(0.0, f64::from(CODE_MAX)) as u16 }
-        };
-        let parts = [-0.5, -1e-9, 0.0, 1e-9, 0.25, 0.5, 0.5 + 1e-9, 0.75, 1.0 - 1e-9];
-        let near = (0..=4_096).flat_map(|code| parts.map(|part| (f64::from(code) + part) * lsb_v));
-        let odd = [f64::NAN, -f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -0.0, 1e300, -1e300, 5e-324];
-        for volts in near.chain(odd) {
-            let codes = Pins([volts; COUNT]).codes();
-            assert_eq!(codes, [slowly(volts); COUNT], "{volts} V");
+        let parts = [(-1e-9, 6), (1e-9, 7), (0.5, 7), (1.0 - 1e-9, 7)];
+        for (part, code) in parts {
+            assert_eq!(Pins([(7.0 + part) * lsb_v; COUNT]).codes(), [code; COUNT], "{part}");
         }
+        let odd =
+            [f64::NAN, -f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -0.0, -lsb_v, 1e300, -1e300, 5e-324];
+        let codes = odd.map(|volts| Pins([volts; COUNT]).codes()[0]);
+        assert_eq!(codes, [0, 0, CODE_MAX, 0, 0, 0, CODE_MAX, 0, 0]);
     }
 }

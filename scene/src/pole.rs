@@ -11,17 +11,14 @@ pub(crate) struct LowPass {
 }
 
 impl LowPass {
-    /// Stepped once a scan.
     pub(crate) fn with_tau_s(tau_s: f64) -> Self {
         Self::new(tau_s, STEP_S)
     }
 
-    /// Stepped once a scan.
     pub(crate) fn with_corner_hz(corner_hz: f64) -> Self {
         Self::with_tau_s(1.0 / (std::f64::consts::TAU * corner_hz))
     }
 
-    /// Stepped once a frame.
     pub(crate) fn of_frames(tau_s: f64) -> Self {
         Self::new(tau_s, FRAME_S)
     }
@@ -35,28 +32,7 @@ impl LowPass {
         self.state
     }
 
-    /// Standard deviation of what it makes of white noise of standard deviation 1.
     pub(crate) fn noise_gain(&self) -> f64 {
         (self.part / (2.0 - self.part)).sqrt()
-    }
-}
-
-/// Low-passes side by side, each with an input of its own: the compiler steps several in one instruction.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct LowPasses<const N: usize> {
-    parts: [f64; N],
-    states: [f64; N],
-}
-
-impl<const N: usize> LowPasses<N> {
-    pub(crate) fn new(poles: [LowPass; N]) -> Self {
-        Self { parts: poles.map(|pole| pole.part), states: poles.map(|pole| pole.state) }
-    }
-
-    pub(crate) fn step(&mut self, inputs: &[f64; N]) -> &[f64; N] {
-        for ((state, part), input) in self.states.iter_mut().zip(&self.parts).zip(inputs) {
-            *state += part * (input - *state);
-        }
-        &self.states
     }
 }

@@ -2,62 +2,42 @@
 
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 
-/// What is random, and on its own: another hand in the same world, or the same hand in another world.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Seeds {
-    /// How the fingertip came out in the making: where its films and gauges lie, their gains and offsets.
     pub making: u64,
-    /// Every noise of one run.
     pub noise: u64,
 }
 
 impl From<u64> for Seeds {
-    /// One seed for both.
     fn from(seed: u64) -> Self {
         Self { making: seed, noise: seed }
     }
 }
 
-/// Who draws. New sources are added at the end: their place is their stream.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Source {
     /// Gains, signs and depths of the PVDF films.
     FilmMaking,
-    /// What the PVDF films hear.
     Film,
-    /// The wandering of the myoelectric envelopes.
     Myo,
     Converter,
-    /// Places, depths and mixtures of the strain gauges.
     StrainMaking,
     Strain,
-    /// Gains and offsets of the normal-force array.
     ArrayMaking,
     Array,
     ArraySlips,
-    /// Where the camera's pixels lie, and their jitter.
     Camera,
-    /// The unevenness of the surface under the normal-force array.
     ArraySurface,
-    /// The camera behind the skin.
     Skin,
-    /// What a camera behind the skin sees: textures, lights, lens, and what happens.
     Picture,
-    /// The noise of its pixels.
     PictureNoise,
-    /// The optics of the photoelastic head.
     HeadMaking,
-    /// Its strip and the layer under it.
     HeadStrip,
-    /// Its light, its ageing and the ambient light of one day.
     HeadDay,
-    /// Its noise.
     Head,
-    /// What the camera behind the skin tells wrongly.
     SkinMistakes,
 }
 
-/// A source's stream of numbers.
 #[derive(Debug)]
 pub(crate) struct Noise(ChaCha8Rng);
 
@@ -68,17 +48,15 @@ impl Noise {
         Self(rng)
     }
 
-    /// Normally distributed, mean 0, standard deviation 1, as far as sensors care: within 4.
+    /// Normally distributed, mean 0, standard deviation 1, within 4; excess kurtosis -0.04, ends at 7.
     ///
-    /// Of one draw of 64 bits, 48 are coins, whose heads are binomial, and 16 fill the gaps between the counts evenly.
-    /// The distribution has an excess kurtosis of -0.04 and ends at 7. It takes no function of any platform's, which the
-    /// ziggurat's tail does, and a third of its time: noise was half of what a world cost.
+    /// Of a draw of 64 bits, 48 are coins, whose heads are binomial, and 16 fill the gaps between the counts evenly: no function of any
+    /// platform's.
     pub(crate) fn normal(&mut self) -> f64 {
         let [one] = self.normals();
         one
     }
 
-    /// As many at once: the compiler then takes several in one instruction.
     pub(crate) fn normals<const N: usize>(&mut self) -> [f64; N] {
         const COINS: u32 = 48;
         // The variances of the count, a quarter a coin, and of the gap's filling.
@@ -97,12 +75,10 @@ impl Noise {
         })
     }
 
-    /// Evenly distributed from `low` to `high`.
     pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.0.random::<f64>()
     }
 
-    /// -1 or 1.
     pub(crate) fn sign(&mut self) -> f64 {
         if self.0.random::<bool>() { 1.0 } else { -1.0 }
     }

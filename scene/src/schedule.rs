@@ -1,14 +1,14 @@
 //! Time, and things that happen for a while.
 
 use tenax_hal_shim::channel::{FRAME_HZ, SCAN_HZ};
+use toml::Spanned;
 
-/// One step of every model: one scan, s.
+use crate::file::quantity::{Duration, Instant};
+
 pub(crate) const STEP_S: f64 = 1.0 / SCAN_HZ as f64;
 
-/// One frame, s: how often the slow sensors are stepped.
 pub(crate) const FRAME_S: f64 = 1.0 / FRAME_HZ as f64;
 
-/// From a beginning to an end, s. The end is not part of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Span {
     pub(crate) begin_s: f64,
@@ -16,6 +16,10 @@ pub(crate) struct Span {
 }
 
 impl Span {
+    pub(crate) fn of(at_s: &Spanned<Instant>, for_s: Duration) -> Self {
+        Self::new(at_s.get_ref().get(), for_s.get())
+    }
+
     pub(crate) const fn new(begin_s: f64, for_s: f64) -> Self {
         Self { begin_s, end_s: begin_s + for_s }
     }
@@ -24,7 +28,6 @@ impl Span {
         (self.begin_s..self.end_s).contains(&t_s)
     }
 
-    /// How much of it is over at `t_s`, 0 to 1.
     pub(crate) fn progress(&self, t_s: f64) -> f64 {
         if t_s >= self.end_s {
             return 1.0;

@@ -2,7 +2,6 @@
 
 use crate::physics::stribeck::{Slider, SmallSignal, StribeckSlider};
 
-/// The step that the scenes use, s: one scan.
 pub const SHIPPED_S: f64 = crate::schedule::STEP_S;
 
 /// Measures how a small deviation from even sliding grows and how fast it swings, as [`StribeckSlider`] steps it: to be
@@ -14,13 +13,11 @@ pub struct SelfExcited {
     pub surface_m_s: f64,
 }
 
-/// The first deviation, m: above rounding, and below what the curve of mu(v) would show, for as long as it is watched.
 const DEVIATION_M: f64 = 1e-13;
 /// Watched for so many swings.
 const SWINGS: usize = 5;
 
 impl SelfExcited {
-    /// Growth and frequency, or none if it does not swing.
     pub fn measured(&self, dt_s: f64) -> Option<SmallSignal> {
         let friction_n = self.slider.friction.mu(self.surface_m_s) * self.normal_n;
         let even_m = friction_n / self.slider.stiffness_n_per_m;

@@ -1,4 +1,4 @@
-//! What really happened in a world, exactly: what a report compares the fingertip with. Nothing here reaches a pin.
+//! The exact log of a world, which a report compares the fingertip with. None of it reaches a pin.
 
 mod record;
 
@@ -12,102 +12,72 @@ use crate::sensor::camera::Seen;
 pub use record::{Activity, MicroRun, Phase, Row, Slip};
 
 pub const TRACE_HZ: u32 = 200;
-/// A myosensor becomes active this far above rest, mV (the firmware's default).
 pub const MYO_ON_MV: f64 = 160.0;
-/// And inactive below this, mV.
 pub const MYO_OFF_MV: f64 = 110.0;
 
-/// Micro slips further apart than this are not of one run, s: the time that a late detection of a slip may take.
 pub const MICRO_PAUSE_S: f64 = 0.050;
 
-/// An object that is this far below the hand is not in it any more, mm: the pads are 18 mm long, and some slips are longer.
 const LEFT_MM: f64 = 40.0;
 
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Truth {
     pub slips: Vec<Slip>,
-    /// Runs of micro slips that came to nothing: everything stuck again before all of it slid faster than the floor.
     pub micro_runs: Vec<MicroRun>,
-    /// Way of all slips that were not meant, mm.
     pub slip_distance_mm: f64,
-    /// Whether the object left the pads after it was lifted.
     pub dropped: bool,
-    /// Whether the hand rose without the object, though its fingers were not opened.
     pub left_behind: bool,
-    /// Whether another hand has taken the object.
     pub handed_over: bool,
-    /// How far it has turned about the pads, rad, towards the load.
     pub turned_rad: f64,
-    /// Elements of the sensed contact that let go, each time counted.
     pub micro_slips: u64,
-    /// When the fingers first crushed it, s.
     pub crushed_at_s: Option<f64>,
-    /// How far they crushed it for good, mm.
     pub dent_mm: f64,
     pub broken_at_s: Option<f64>,
-    /// The furthest that it turned about the pads, rad.
     pub pitch_rad: f64,
-    /// The greatest grip force of a finger, N.
     pub peak_grip_n: f64,
-    /// The grip force of a finger while the hand carried the object: its integral, N s, and for how long, s.
     pub carried_ns: f64,
     pub carried_s: f64,
-    /// What it pressed beyond the need meanwhile: its integral, N s.
     pub beyond_need_ns: f64,
-    /// The greatest grip force that was ever needed while the hand carried the object, N.
     pub needed_grip_n: f64,
     /// The least margin while the hand carried the object, and the last, N: the shear that a finger could still carry.
     pub margin_n: Option<[f64; 2]>,
-    /// The wearer's wishes, one after the other.
     pub phases: Vec<Phase>,
-    /// When each myosensor's pin was over its threshold.
     pub activity: Vec<Activity>,
     pub trace: Vec<Row>,
-    /// What the camera said, 30 times a second. It goes to nobody by itself.
     pub camera: Vec<Seen>,
     let_go: bool,
     slide: Option<Slide>,
     micro: Option<Micro>,
 }
 
-/// A run of micro slips.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Micro {
     begin_s: f64,
     last_s: f64,
 }
 
-/// The contact slides at this moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Slide {
     micro_s: f64,
     begin_s: f64,
     way_mm: f64,
-    /// Whether it was ever faster than the floor, so that it stands in [`Truth::slips`] as the last one.
     counts: bool,
 }
 
-/// What the world tells its log about one step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Step<'a> {
     pub(crate) t_s: f64,
     pub(crate) touch: &'a Touch,
     pub(crate) state: State,
-    /// Faster than this is slip, mm/s.
     pub(crate) floor_mm_s: f64,
     pub(crate) opens: bool,
-    /// Whether a row of the trace is due.
     pub(crate) trace: bool,
 }
 
-/// What a model of the object or the surface knows of itself.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct State {
-    /// Whether a slide that begins now is slip: the hand carries the object, or strokes the surface.
     pub(crate) carried: bool,
     pub(crate) dropped: bool,
     pub(crate) needed_n: f64,
-    /// What each finger could still carry, N.
     pub(crate) margin_n: f64,
     pub(crate) mass_kg: f64,
     pub(crate) position_mm: f64,
@@ -115,9 +85,7 @@ pub(crate) struct State {
     pub(crate) pitch_rad: f64,
     pub(crate) dent_mm: f64,
     pub(crate) broken: bool,
-    /// Whether another hand has the object too, or has taken it: what slides is meant to.
     pub(crate) shared: bool,
-    /// Whether another hand has taken the object.
     pub(crate) taken: bool,
 }
 
@@ -166,7 +134,6 @@ impl Truth {
         }
     }
 
-    /// Whether the object moves over the pad faster than the floor.
     pub(crate) fn slipping(&self, touch: &Touch, floor_mm_s: f64) -> bool {
         self.slide.is_some() && touch.rub_m_s() * 1e3 > floor_mm_s
     }

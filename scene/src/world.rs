@@ -35,10 +35,8 @@ use crate::sensor::skin::SkinCamera;
 use crate::sensor::strain::Gauges;
 use crate::truth::{self, Row, State, TRACE_HZ, Truth};
 
-/// Scans between two rows of the trace.
 const TRACE_EVERY: u64 = (SCAN_HZ / TRACE_HZ) as u64;
 
-/// A scene that runs.
 #[derive(Debug)]
 pub struct World {
     scans: u64,
@@ -46,13 +44,11 @@ pub struct World {
     floor_mm_s: f64,
     wearer: Wearer,
     gripper: Gripper,
-    /// It tells the wearer.
     vibrator: Option<Vibrator>,
     jams: Vec<Span>,
     task: Task,
     touch: Touch,
     films: Films,
-    /// In the place of the last film.
     head: Option<Head>,
     quadrants: Quadrants,
     envelopes: Envelopes,
@@ -72,12 +68,9 @@ pub struct World {
     truth: Truth,
 }
 
-/// What the fingertip is busy with.
 #[derive(Clone, Debug)]
 enum Task {
-    /// An object between the fingers, carried by the wearer's arm.
     Grasp { grasp: Box<Grasp>, hand: Hand, arm: Arm },
-    /// A surface, stroked by a robot.
     Stroke(Box<Stroke>),
 }
 
@@ -108,7 +101,7 @@ impl World {
             wearer: Wearer::new(&scene.muscle),
             gripper: Gripper::new(&scene.gripper),
             vibrator: scene.vibrator.as_ref().map(Vibrator::new),
-            jams: scene.jam.iter().map(|jam| Span::new(jam.at_s.get_ref().get(), jam.for_s.get())).collect(),
+            jams: scene.jam.iter().map(|jam| Span::of(&jam.at_s, jam.for_s)).collect(),
             task,
             touch: Touch::default(),
             films: Films::new(&scene.pvdf, (&scene.knock, &scene.hum), scene.contact.pitch_mm.get(), seeds),
@@ -135,7 +128,6 @@ impl World {
         }
     }
 
-    /// The same with a plan to grip by ([`Plant::planned`]).
     pub fn planning(mut self, plan: Option<Plan>) -> Self {
         self.plan = plan;
         self
@@ -145,22 +137,18 @@ impl World {
         &self.truth
     }
 
-    /// Takes the rows of the trace that have come since they were last taken, so that a long run need not keep them.
     pub fn take_trace(&mut self) -> std::vec::Drain<'_, Row> {
         self.truth.trace.drain(..)
     }
 
-    /// What the sensed fingertip feels at this instant.
     pub const fn touch(&self) -> &Touch {
         &self.touch
     }
 
-    /// The photoelastic head, if there is one.
     pub const fn head(&self) -> Option<&Head> {
         self.head.as_ref()
     }
 
-    /// The camera's newest words that have come over the line.
     pub const fn said(&self) -> Option<Seen> {
         self.eye.said()
     }
@@ -169,12 +157,10 @@ impl World {
         matches!(self.task, Task::Stroke(_))
     }
 
-    /// How much of it is over, s.
     pub fn now_s(&self) -> f64 {
         self.scans as f64 * STEP_S
     }
 
-    /// Steps what sits behind the switches, once a frame: each of it is read once in 25.
     fn slow(&mut self, t_s: f64, effort: &Effort) {
         let released_n = std::mem::take(&mut self.released_n);
         let pins_v = &mut self.slow_v;
@@ -189,7 +175,6 @@ impl World {
         self.truth.wearer(t_s, effort.intent, pins_v);
     }
 
-    /// Somebody handles the object, if there is one.
     fn handle(&mut self, at_s: f64, act: Act) {
         let Task::Grasp { grasp, hand, .. } = &mut self.task else { return };
         match act {
@@ -207,7 +192,7 @@ impl World {
     }
 
     fn moves(&mut self, t_s: f64, drive: MotorDrive) -> State {
-        self.gripper.jam(self.jams.iter().any(|jam| jam.contains(t_s)));
+        self.gripper.is_jammed = self.jams.iter().any(|jam| jam.contains(t_s));
         self.gripper.step(drive, self.touch.normal_n);
         match &mut self.task {
             Task::Grasp { grasp, hand, arm } => {
@@ -220,35 +205,23 @@ impl World {
                 State {
                     carried: carried || *arm == Arm::Robot,
                     dropped: grasp.is_dropped(),
-                    needed_n: if carried { grasp.needed_n() } else { 0.0 },
+                    needed_n: if carried { grasp.needed_n } else { 0.0 },
                     margin_n: if carried { grasp.margin_n(self.touch.normal_n) } else { 0.0 },
-                    mass_kg: grasp.mass_kg(),
+                    mass_kg: grasp.mass_kg,
                     position_mm: grasp.height_m(hand) * 1e3,
-                    hand_mm: hand.height_m() * 1e3,
+                    hand_mm: hand.height_m * 1e3,
                     pitch_rad: grasp.pitch_rad(),
-                    dent_mm: grasp.body().dent_mm(),
-                    broken: grasp.body().is_broken(),
+                    dent_mm: grasp.body.dent_mm,
+                    broken: grasp.body.broken,
                     shared: grasp.is_shared(),
-                    taken: grasp.is_taken(),
+                    taken: grasp.taken,
                 }
             }
             Task::Stroke(stroke) => {
                 self.touch = stroke.step(t_s);
-                State {
-                    carried: true,
-                    dropped: false,
-                    needed_n: 0.0,
-                    margin_n: 0.0,
-                    mass_kg: 0.0,
-                    // The surface lies still; the probe is the hand.
-                    position_mm: stroke.probe_m() * 1e3,
-                    hand_mm: stroke.probe_m() * 1e3,
-                    pitch_rad: 0.0,
-                    dent_mm: 0.0,
-                    broken: false,
-                    shared: false,
-                    taken: false,
-                }
+                // The surface lies still; the probe is the hand.
+                let probe_mm = stroke.probe_m * 1e3;
+                State { carried: true, position_mm: probe_mm, hand_mm: probe_mm, ..State::default() }
             }
         }
     }
@@ -271,7 +244,7 @@ impl Plant for World {
             touch: &self.touch,
             state,
             floor_mm_s: self.floor_mm_s,
-            opens: self.gripper.speed_mm_s() > 0.0,
+            opens: self.gripper.speed_mm_s > 0.0,
             trace: self.scans.is_multiple_of(TRACE_EVERY),
         });
 

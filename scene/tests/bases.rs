@@ -24,14 +24,12 @@ ring_hz = 400
 decay_ms = 4
 ";
 
-/// A scene upon `bases/under.toml`, which reads `under`.
 fn upon(own: &str, under: &'static str) -> Result<SceneFile, String> {
     let text = format!("name = \"n\"\nbase = \"under\"\ntitle = \"t\"\n{own}");
     let find = |name: &str| (name == "under").then(|| ("bases/under.toml".to_owned(), Cow::Borrowed(under)));
     SceneFile::parse_upon(&text, "my.toml", &find).map_err(|error| error.to_string())
 }
 
-/// What a scene says, without where it stands in which file.
 fn told(scene: &SceneFile) -> String {
     let shown = format!("{scene:?}");
     let mut parts = shown.split("span: ");

@@ -14,7 +14,6 @@ const MU: f64 = 0.5;
 const PLAIN: Friction = Friction { mu_s: MU, mu_d: MU };
 const DROPS: Friction = Friction { mu_s: MU, mu_d: 0.4 };
 
-/// The worst difference of Q / (mu P) from the cubic, at displacements that no ring is centred on.
 fn cubic_error(elements: NonZeroU16) -> f64 {
     const LOOKS: u32 = 4_801;
     let whole_m = PAD.macro_slip_m(NORMAL_N, MU);
@@ -29,14 +28,8 @@ fn cubic_error(elements: NonZeroU16) -> f64 {
 }
 
 #[test]
-fn the_sum_of_the_rings_is_the_cubic_within_a_thousandth() {
-    let error = cubic_error(ELEMENTS);
-    assert!(error < 1e-3, "{error} of mu P");
-}
-
-#[test]
-fn it_converges_at_second_order_and_as_predicted() {
-    for elements in [4, 8, 16, 32, 64, 128] {
+fn the_sum_of_the_rings_converges_to_the_cubic_at_second_order() {
+    for elements in [4, 8, 16, ELEMENTS.get(), 32, 64, 128] {
         let error = cubic_error(NonZeroU16::new(elements).unwrap());
         let scaled = error * f64::from(elements).powi(2);
         // 0.375 as N grows.
@@ -58,20 +51,6 @@ fn the_stick_radius_is_the_root_within_a_ring() {
 }
 
 #[test]
-fn how_far_it_is_from_the_elastic_half_space() {
-    let parts = (1..1_000).map(|n| f64::from(n) / 1e3);
-    let (mut shear, mut radius): (f64, f64) = (0.0, 0.0);
-    for s in parts {
-        let q = closed_form::shear(s);
-        shear = shear.max((q - closed_form::half_space_shear(s)).abs());
-        radius = radius.max((closed_form::stick_radius(s) - closed_form::half_space_stick_radius(q)).abs());
-    }
-    // The figures that docs/stepping.md states.
-    assert!((shear - 0.045).abs() < 0.001, "{shear} of mu P");
-    assert!((radius - 0.22).abs() < 0.01, "{radius} of a");
-}
-
-#[test]
 fn every_ring_lets_go_once_at_even_displacements_and_they_release_the_whole_drop() {
     let whole_m = PAD.macro_slip_m(NORMAL_N, MU);
     const LOOKS: u32 = 24_000;
@@ -89,27 +68,21 @@ fn every_ring_lets_go_once_at_even_displacements_and_they_release_the_whole_drop
     assert!(patch.is_sliding());
 }
 
-/// A block on a pad, pulled harder and harder until `part` of the normal load, then held. L0 and L1.
-fn pulled(part: f64) -> (bool, bool, Option<f64>) {
+/// True where L0, and L1, hold a block on a pad that is pulled up to `part` of the normal load.
+fn hold(part: f64) -> (bool, bool) {
     const MASS_KG: f64 = 0.1;
     // The rubber's own damping; it brings the block on its patch to rest. Assumed.
     let damping_ns_per_m = 1.4 * (PAD.stiffness_n_per_m() * MASS_KG).sqrt();
     let (mut rigid, mut rigid_m_s) = (RigidCoulomb::default(), 0.0);
     let (mut patch, mut patch_m_s, mut shear_n) = (BrushPatch::new(PAD, ELEMENTS), 0.0, 0.0);
-    let mut first_event_s = None;
     for n in 0..24_000_u32 {
-        let t_s = f64::from(n) * SHIPPED_S;
-        let pull_n = part * NORMAL_N * (t_s / 2.0).min(1.0);
+        let pull_n = part * NORMAL_N * (f64::from(n) * SHIPPED_S / 2.0).min(1.0);
         let free_m_s = rigid_m_s + pull_n / MASS_KG * SHIPPED_S;
         rigid_m_s = rigid.step(NORMAL_N, DROPS, MASS_KG, free_m_s, SHIPPED_S).speed_m_s;
         patch_m_s += (pull_n - shear_n - damping_ns_per_m * patch_m_s) / MASS_KG * SHIPPED_S;
-        let outcome = patch.step(NORMAL_N, DROPS, patch_m_s * SHIPPED_S);
-        shear_n = outcome.shear_n;
-        if outcome.let_go > 0 {
-            first_event_s = first_event_s.or(Some(t_s));
-        }
+        shear_n = patch.step(NORMAL_N, DROPS, patch_m_s * SHIPPED_S).shear_n;
     }
-    (rigid.sticks(), !patch.is_sliding(), first_event_s)
+    (rigid.sticks(), !patch.is_sliding())
 }
 
 #[test]
@@ -117,20 +90,9 @@ fn rigid_coulomb_holds_what_a_patch_loses() {
     let peak = closed_form::shear_with_drop(closed_form::peak(DROPS), DROPS);
     assert!((peak - 0.4226).abs() < 1e-3, "{peak}");
     // Below the patch's peak both hold; above mu_s neither; between, L0 is wrong: up to 15 % too much.
-    assert_eq!((pulled(0.98 * peak).0, pulled(0.98 * peak).1), (true, true));
-    let between = pulled(0.5 * (peak + DROPS.mu_s));
-    assert_eq!((between.0, between.1), (true, false));
-    assert_eq!((pulled(1.02 * DROPS.mu_s).0, pulled(1.02 * DROPS.mu_s).1), (false, false));
-}
-
-#[test]
-fn rigid_coulomb_is_silent_while_a_patch_already_lets_go() {
-    // At 60 % of mu_s nothing slides as a whole, and L0 has no event at all; the edge of the patch has let go.
-    let (rigid_sticks, patch_sticks, first_event_s) = pulled(0.6 * DROPS.mu_s);
-    assert!(rigid_sticks && patch_sticks);
-    let first_event_s = first_event_s.expect("the edge lets go");
-    // The first ring lets go at s of about 2/3 of 1/N, where the pull is 1.5 s mu_s P.
-    assert!(first_event_s < 0.25, "{first_event_s} s");
+    assert_eq!(hold(0.98 * peak), (true, true));
+    assert_eq!(hold(0.5 * (peak + DROPS.mu_s)), (true, false));
+    assert_eq!(hold(1.02 * DROPS.mu_s), (false, false));
 }
 
 proptest! {

@@ -1,13 +1,8 @@
 //! Every scene that comes with the program shows what it says it shows. Each absence has its control.
 
-use crate::common::{Reflex, run, scene};
+use crate::common::{Reflex, changed, run, scene, truth};
 use tenax_hal_shim::channel::{MYO_EXTENSOR, MYO_FLEXOR, by_name};
-use tenax_scene::truth::Slip;
 use tenax_scene::{SceneFile, Truth, builtin};
-
-fn truth(name: &str, reflex: Reflex) -> Truth {
-    run(&scene(name), 1, reflex, |_, _, _| {}).truth().clone()
-}
 
 #[test]
 fn every_scene_parses_and_is_called_as_its_file() {
@@ -19,9 +14,9 @@ fn every_scene_parses_and_is_called_as_its_file() {
     assert_eq!(builtin()[0].0, "glass", "the default scene comes first");
 }
 
+/// Keys that are an instant, a duration or a name explain themselves; every other has a comment in its file.
 #[test]
 fn every_number_in_every_scene_says_where_it_is_from_at_least_once() {
-    // A key that is only ever an instant, a duration or a name explains itself; every other has a comment in its file.
     let explains_itself =
         "at_s for_s until_s name base without title from channel kind intent reason duration_s";
     for (name, text) in builtin().iter().chain(builtin::parts()) {
@@ -43,64 +38,55 @@ fn every_number_in_every_scene_says_where_it_is_from_at_least_once() {
     }
 }
 
+/// Without its knocks, so that nothing else closes the fingers.
 #[test]
-fn the_glass_slips_once_when_it_is_wet_and_a_reflex_on_vibration_keeps_it() {
-    // Without its knocks: a bare threshold answers those too, and then grips too firmly for the wet patch to matter.
-    let unknocked =
-        builtin()[0].1.replace("peak_mv = 40", "peak_mv = 0").replace("peak_mv = 60", "peak_mv = 0");
-    let unknocked = SceneFile::parse(&unknocked, "unknocked").unwrap();
-    let kept = run(&unknocked, 1, Reflex::RatioAndVibration, |_, _, _| {}).truth().clone();
-    let [slip] = kept.slips[..] else { panic!("{:?}", kept.slips) };
+fn the_glass_slips_when_it_is_wet_and_falls_unless_vibration_is_answered() {
+    let lost = truth(
+        &changed("glass", &[("peak_mv = 40", "peak_mv = 0"), ("peak_mv = 60", "peak_mv = 0")]),
+        Reflex::Ratio,
+    );
+    let slip = lost.slips[0];
     assert!((42.0..42.05).contains(&slip.macro_onset_s) && !slip.meant);
     assert_eq!(slip.micro_onset_s, slip.macro_onset_s, "rigid contact has no micro slip");
-    assert!(!kept.dropped && kept.slip_distance_mm < 15.0, "{} mm", kept.slip_distance_mm);
     // The wet full glass needs m g / (2 mu_s) = 0.55 * 9.81 / (2 * 0.25); swings and lifts add little.
-    assert!((10.7..11.5).contains(&kept.needed_grip_n), "{} N", kept.needed_grip_n);
-
-    let lost = truth("glass", Reflex::Ratio);
-    assert!(lost.dropped, "without vibration it must fall, or the scene proves nothing");
+    assert!((10.7..11.5).contains(&lost.needed_grip_n), "{} N", lost.needed_grip_n);
+    assert!(lost.dropped);
 }
 
 #[test]
-fn nothing_slips_where_nothing_should() {
-    for name in ["glass-quiet", "knocks"] {
-        // With S2 alone: the scene is safe, so whatever S1 answers there is its own doing.
-        let truth = truth(name, Reflex::Ratio);
+fn nothing_slips_where_nothing_should_and_the_last_swing_needs_more_than_the_wearer_gave() {
+    for name in ["glass-quiet", "knocks", "arm-swing"] {
+        let truth = truth(&scene(name), Reflex::Ratio);
         assert_eq!((truth.slips.as_slice(), truth.dropped), (&[][..], false), "{name}");
     }
-}
-
-#[test]
-fn the_last_swing_needs_more_than_the_wearer_gave() {
-    let truth_with_ratio = truth("arm-swing", Reflex::Ratio);
-    let truth = truth("arm-swing", Reflex::None);
-    assert!(truth_with_ratio.slips.is_empty(), "with it, it does not");
-    let first = truth.slips.first().expect("without S2 the glass slips");
-    assert!(first.macro_onset_s > 20.0, "{first:?}");
+    let slips = truth(&scene("arm-swing"), Reflex::None).slips;
+    assert!(slips.first().is_some_and(|slip| slip.macro_onset_s > 20.0), "the control: {slips:?}");
 }
 
 #[test]
 fn the_wearer_pair_slips_at_the_same_time_with_and_without_muscles() {
     let onset = |truth: &Truth| {
-        truth.slips.iter().find(|slip| slip.macro_onset_s > 14.0).map(|slip| slip.macro_onset_s)
+        let mut onsets = truth.slips.iter().map(|slip| slip.macro_onset_s);
+        onsets.find(|&onset_s| onset_s > 14.0).expect("it slips")
     };
-    let (with, without) = (truth("wearer", Reflex::None), truth("wearer-control", Reflex::None));
-    let at_s = onset(&with).expect("it slips");
+    let [with, without] = ["wearer", "wearer-control"].map(|name| truth(&scene(name), Reflex::None));
+    let at_s = onset(&with);
     // The muscles do not rise in the same scan, so the hand twitches a little before.
-    assert!((at_s - onset(&without).expect("it slips")).abs() < 0.002);
-    let active = |truth: &Truth, channel| {
-        let mut over = truth.activity.iter().filter(|a| a.channel == channel);
-        over.any(|a| a.on_s < at_s && a.off_s.is_none_or(|off_s| off_s > at_s))
+    assert!((at_s - onset(&without)).abs() < 0.002);
+    let active = |truth: &Truth| {
+        [MYO_FLEXOR, MYO_EXTENSOR].map(|channel| {
+            let mut over = truth.activity.iter().filter(|a| a.channel == channel);
+            over.any(|a| a.on_s < at_s && a.off_s.is_none_or(|off_s| off_s > at_s))
+        })
     };
-    assert!(active(&with, MYO_FLEXOR) && active(&with, MYO_EXTENSOR));
-    assert!(!active(&without, MYO_FLEXOR) && !active(&without, MYO_EXTENSOR));
+    assert_eq!((active(&with), active(&without)), ([true; 2], [false; 2]));
     assert!(!with.dropped && !without.dropped);
 }
 
 #[test]
 fn on_every_surface_and_under_every_load_it_slides_at_mu_s() {
     for (name, mu_s) in [("explore-wood", 0.5), ("explore-glass", 0.6), ("explore-card", 0.4)] {
-        let truth = truth(name, Reflex::None);
+        let truth = truth(&scene(name), Reflex::None);
         for load_n in [2.0, 4.0, 8.0] {
             let full = truth.trace.iter().filter(|row| (row.grip_n - load_n).abs() < 1e-6);
             let peak = full.map(|row| row.shear_n / row.grip_n).fold(0.0, f64::max);
@@ -113,40 +99,26 @@ fn on_every_surface_and_under_every_load_it_slides_at_mu_s() {
 }
 
 #[test]
-fn dead_sensors_are_dead_from_their_instant_on() {
-    let fsr_c = by_name("fsr_c").unwrap();
-    let (mut before, mut after) = (f64::MAX, f64::MIN);
-    run(&scene("dead-sensor"), 1, Reflex::None, |world, pins, _| {
-        if world.now_s() < 12.0 {
-            before = before.min(pins.0[fsr_c]);
-        } else {
-            after = after.max(pins.0[fsr_c]);
-        }
-    });
-    assert!(before > 0.19, "{before} V while it works");
-    assert_eq!(after, 0.0);
-}
-
-#[test]
-fn a_sensor_pressed_at_boot_shows_it_from_the_first_scan_and_comes_back() {
-    let fsr_a = by_name("fsr_a").unwrap();
-    let (mut first, mut freed) = (None, 0.0);
-    run(&scene("pressed-at-boot"), 1, Reflex::None, |world, pins, _| {
-        first.get_or_insert(pins.0[fsr_a]);
-        if world.now_s() < 10.5 {
-            freed = pins.0[fsr_a];
-        }
-    });
-    assert!(first.unwrap() > 0.5, "{first:?} V");
-    assert!((freed - 0.2).abs() < 0.03, "{freed} V");
+fn a_fault_is_on_its_pin_from_its_first_instant_to_its_last() {
+    let pin = |name: &str, channel: &str, at_s: f64| {
+        let (channel, mut found_v) = (by_name(channel).unwrap(), f64::NAN);
+        run(&scene(name), Reflex::None, |world, pins| {
+            if world.now_s() <= at_s {
+                found_v = pins.0[channel];
+            }
+        });
+        found_v
+    };
+    assert!(pin("dead-sensor", "fsr_c", 11.9) > 0.19, "while it works");
+    assert_eq!([12.1, 20.0].map(|at_s| pin("dead-sensor", "fsr_c", at_s)), [0.0; 2]);
+    assert!(pin("pressed-at-boot", "fsr_a", 0.001) > 0.5);
+    assert!((pin("pressed-at-boot", "fsr_a", 10.4) - 0.2).abs() < 0.03, "it comes back");
 }
 
 #[test]
 fn a_slip_that_is_meant_is_not_counted() {
     // The wearer opens in mid-air.
-    let text = builtin()[0].1.replace("at_s = 54.0", "at_s = 35.0");
-    let truth = run(&SceneFile::parse(&text, "t").unwrap(), 1, Reflex::Ratio, |_, _, _| {}).truth().clone();
-    let Slip { meant, macro_onset_s, .. } = truth.slips[0];
-    assert!(meant && macro_onset_s > 35.0 && truth.dropped);
+    let truth = truth(&changed("glass", &[("at_s = 54.0", "at_s = 35.0")]), Reflex::Ratio);
+    assert!(truth.slips[0].meant && truth.slips[0].macro_onset_s > 35.0 && truth.dropped);
     assert_eq!(truth.slip_distance_mm, 0.0);
 }

@@ -4,7 +4,6 @@ use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_scene::plant::Plant;
 use tenax_scene::{SceneFile, World, builtin};
 
-/// FNV-1a over the codes of a few seconds in which everything that computes has its turn.
 fn checksum(name: &str, seed: u64, seconds: u32) -> u64 {
     let (_, text) = builtin().iter().find(|(builtin, _)| *builtin == name).unwrap();
     let mut world = World::new(&SceneFile::parse(text, name).unwrap(), seed);
@@ -23,15 +22,10 @@ fn checksum(name: &str, seed: u64, seconds: u32) -> u64 {
 }
 
 #[test]
-fn the_same_seed_gives_the_same_bytes_and_another_gives_others() {
-    assert_eq!(checksum("glass", 7, 3), checksum("glass", 7, 3));
-    assert_ne!(checksum("glass", 7, 3), checksum("glass", 8, 3));
-}
-
-#[test]
 fn the_bytes_are_those_of_every_other_build() {
     // Changes with the scenes and the models, on purpose: then take the new numbers from this test's message, once, and
     // see that debug and release (`cargo test`, `cargo test --release`) agree on them.
+    assert_ne!(checksum("glass", 7, 3), checksum("glass", 8, 3));
     let sums = [
         checksum("glass", 1, 12),
         checksum("explore-wood", 1, 4),

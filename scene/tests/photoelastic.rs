@@ -11,7 +11,6 @@ use tenax_scene::sensor::photoelastic::{HEAD_STRIP, Head};
 const SCAN_S: f64 = 1.0 / 8_000.0;
 const LOAD_N: f64 = 1.0;
 
-/// The pin over time, mV, while a block is driven over the head: 0.5 s at rest, 1 s at `rate_mm_s`, 0.5 s at rest.
 fn pin_mv(friction: Stribeck, rate_mm_s: f64) -> Vec<f64> {
     let slider = Slider { friction, ..HEAD_STRIP };
     let mut head = Head::with(Layer::DUBEY, Making::MEAN, Day::FIRST, slider, 1.into());
@@ -36,7 +35,6 @@ fn line(pin_mv: &[f64]) -> (f64, f64) {
     })
 }
 
-/// Of the last half second of sliding.
 fn sliding(friction: Stribeck, rate_mm_s: f64) -> (f64, f64) {
     line(&pin_mv(friction, rate_mm_s)[8_000..12_000])
 }
@@ -46,7 +44,6 @@ fn amplitude_and_frequency_rise_with_the_rate_and_metal_is_louder_than_plastic()
     let rates = [0.1, 0.3, 0.6, 1.0, 2.0, 2.7];
     let metal = rates.map(|rate| sliding(METAL, rate));
     let plastic = rates.map(|rate| sliding(PLASTIC, rate));
-    println!("{metal:?}\n{plastic:?}");
     for lines in [metal, plastic] {
         assert!(lines.windows(2).all(|two| two[1].0 > two[0].0), "amplitudes {lines:?}");
         assert!(lines[5].1 > lines[0].1 + 5.0, "frequencies {lines:?}");
@@ -68,7 +65,6 @@ fn without_falling_friction_there_is_light_only_where_slip_begins_and_ends() {
         let [begins, slides, ends] =
             [&pin[3_900..6_000], &pin[8_000..11_900], &pin[11_900..14_000]].map(swing);
         // Noise of a scan is 1 mV rms.
-        println!("{rate_mm_s}: {begins} {slides} {ends}");
         assert!(begins > 100.0 && slides < 10.0 && ends < begins, "{rate_mm_s}: {begins} {slides} {ends}");
         let (amplitude, _) = line(&pin[8_000..12_000]);
         assert!(amplitude < 0.2 * line(&with[8_000..12_000]).0, "the control vibrates: {amplitude} mV");

@@ -9,32 +9,25 @@ use std::f64::consts::TAU;
 use std::ops::Range;
 use std::path::Path;
 
-use crate::common::{Reflex, run, scene};
+use crate::common::{Reflex, changed, run, scene};
 use tenax_hal_shim::channel::{FRAME_HZ, PVDF_COUNT, SCANS_PER_FRAME};
 use tenax_hal_shim::front_end::PVDF_REST_MV;
-use tenax_scene::{SceneFile, builtin};
+use tenax_scene::SceneFile;
 
 /// From film to pin.
 const GAIN: f64 = 20.0;
 /// Films 1 to 12 at 2 kHz, mV at the film.
 type Films = [Vec<f64>; PVDF_COUNT];
 
-/// A scene in which nobody answers vibration, cut to `span_s`.
-fn recording(name: &str, span_s: Range<f64>) -> Films {
-    recording_of(&scene(name), span_s)
-}
-
-/// The glass that gets wet, held by patches: the onset that the recorded one is laid beside.
 fn patch_onset() -> Films {
-    let text = builtin()[0].1.replace("[contact]\n", "[contact]\nlevel = \"l1\"\n");
-    recording_of(&SceneFile::parse(&text, "patch").unwrap(), 41.99..42.09)
+    recording(&changed("glass", &[("[contact]\n", "[contact]\nlevel = \"l1\"\n")]), 41.99..42.09)
 }
 
-fn recording_of(scene: &SceneFile, span_s: Range<f64>) -> Films {
+fn recording(scene: &SceneFile, span_s: Range<f64>) -> Films {
     let mut films = Films::default();
     let mut sums = [0.0; PVDF_COUNT];
     let mut scans = 0_usize;
-    run(scene, 1, Reflex::Ratio, |world, pins, _| {
+    run(scene, Reflex::Ratio, |world, pins| {
         if !span_s.contains(&world.now_s()) {
             return;
         }
@@ -64,7 +57,6 @@ fn rms(film: &[f64]) -> f64 {
     (film.iter().map(|mv| (mv - mean).powi(2)).sum::<f64>() / film.len() as f64).sqrt()
 }
 
-/// The part of the energy between two frequencies, by the definition of the Fourier transform.
 fn energy_part(film: &[f64], hz: Range<f64>) -> f64 {
     let mean = film.iter().sum::<f64>() / film.len() as f64;
     let (mut inside, mut all) = (0.0, 0.0);
@@ -84,7 +76,6 @@ fn energy_part(film: &[f64], hz: Range<f64>) -> f64 {
     inside / all
 }
 
-/// How long the first bump is above a fifth of its own peak, ms.
 fn bump_ms(film: &[f64]) -> f64 {
     let peak = film.iter().fold(0.0_f64, |peak, mv| peak.max(mv.abs()));
     let first = film.iter().position(|mv| mv.abs() > peak / 5.0).unwrap_or(0);
@@ -92,7 +83,6 @@ fn bump_ms(film: &[f64]) -> f64 {
     length as f64 * 1e3 / f64::from(FRAME_HZ)
 }
 
-/// How long it is above half of its peak, from first to last, ms: what sliding sounds like afterwards is less.
 fn half_height_ms(film: &[f64]) -> f64 {
     let peak = film.iter().fold(0.0_f64, |peak, mv| peak.max(mv.abs()));
     let high = |mv: &f64| mv.abs() > peak / 2.0;
@@ -106,7 +96,6 @@ fn near(value: f64, figures: Range<f64>) -> bool {
     (figures.start / 2.0..figures.end * 2.0).contains(&value)
 }
 
-/// Of the recordings' size, with their share of low and of high frequencies.
 fn is_a_bump(onset: &Films) {
     let swing_mv = median(onset, peak_to_peak);
     assert!(near(swing_mv, 37.0..61.0), "{swing_mv} mV peak to peak");
@@ -119,7 +108,7 @@ fn is_a_bump(onset: &Films) {
 #[test]
 fn slip_onset_is_a_bump_and_not_a_burst() {
     // The onset is at 42.013 s; a cut of 100 ms like the recording's, before the glass has fallen out of the hand.
-    let onset = recording("glass", 41.99..42.09);
+    let onset = recording(&scene("glass"), 41.99..42.09);
     is_a_bump(&onset);
     let long_ms = median(&onset, bump_ms);
     assert!(near(long_ms, 25.0..26.0), "{long_ms} ms");
@@ -157,7 +146,7 @@ fn the_figures_are_the_recordings() {
 
 #[test]
 fn quiet_is_as_quiet() {
-    let quiet = recording("glass", 3.0..4.0);
+    let quiet = recording(&scene("glass"), 3.0..4.0);
     let noise_mv = median(&quiet, rms);
     assert!(near(noise_mv, 0.3..0.31), "{noise_mv} mV rms");
 }
@@ -165,7 +154,7 @@ fn quiet_is_as_quiet() {
 #[test]
 fn contact_is_slow_and_smaller_than_slip() {
     // The fingers touch the glass at about 1.35 s.
-    let contact = recording("glass", 1.3..1.5);
+    let contact = recording(&scene("glass"), 1.3..1.5);
     let swing_mv = median(&contact, peak_to_peak);
     assert!(near(swing_mv, 7.0..13.0), "{swing_mv} mV peak to peak");
 }

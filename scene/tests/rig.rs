@@ -6,19 +6,14 @@
 
 use std::path::Path;
 
-use crate::common::{Reflex, run, scene};
+use crate::common::{Reflex, parsed, run, scene, truth};
 
-/// The recording's own mark of first motion: the plate's encoder passes this, mm/s.
 const MOVES_MM_S: f64 = 2.0;
 
-/// What a rise, peak and fall is measured by.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Onset {
-    /// The greatest Ft/Fn around the onset.
     peak: f64,
-    /// From first motion to it, s.
     rise_s: f64,
-    /// From Ft/Fn passing 0.30, 0.50 and 0.60 to the peak, s.
     passes_s: [f64; 3],
     /// From the peak to the mean over 31 to 71 ms after it.
     drop: f64,
@@ -28,7 +23,6 @@ struct Onset {
 const RECORDED: Onset =
     Onset { peak: 0.690, rise_s: 0.0420, passes_s: [0.0236, 0.0169, 0.0122], drop: 0.2276 };
 
-/// `rows` are time, speed of the plate in mm/s, Ft and Fn. The first motion is looked for from 1 s on.
 fn onset(rows: &[(f64, f64, f64, f64)]) -> Onset {
     let moves = rows.iter().position(|row| row.0 > 1.0 && row.1 >= MOVES_MM_S).expect("it moves");
     let moves_s = rows[moves].0;
@@ -49,10 +43,9 @@ fn within(value: f64, figure: f64, part: f64) -> bool {
     (value / figure - 1.0).abs() <= part
 }
 
-/// The scene, every scan. The surface lies still, so the plate's speed is the carriage's: the scene's ramp.
 fn modelled() -> Onset {
     let mut rows = Vec::new();
-    run(&scene("rig"), 1, Reflex::None, |world, _, _| {
+    run(&scene("rig"), Reflex::None, |world, _| {
         let touch = world.touch();
         let p = ((world.now_s() - 1.496) / 0.230).clamp(0.0, 1.0);
         rows.push((world.now_s(), 40.0 * p * p * (3.0 - 2.0 * p), touch.shear_n, touch.normal_n));
@@ -73,21 +66,11 @@ fn the_rig_s_onset_is_reproduced() {
 fn rigid_friction_gets_the_rise_wrong() {
     // The same scene at L0: the arm is nearly rigid, so the ratio is at its peak as soon as the plate moves.
     let (_, text) = tenax_scene::builtin().iter().find(|(name, _)| *name == "rig").unwrap();
-    let rigid: String = text
-        .lines()
-        .filter(|line| !line.starts_with("skin_"))
-        .map(
-            |line| {
-                if line.starts_with("level") { "level = \"l0\"\n".to_owned() } else { format!("{line}\n") }
-            },
-        )
-        .collect();
-    let rigid = tenax_scene::SceneFile::parse(&rigid, "rigid").unwrap();
-    let truth = run(&rigid, 1, Reflex::None, |_, _, _| {}).truth().clone();
-    let first = truth.slips[0];
+    let lines = text.lines().filter(|line| !line.starts_with("skin_"));
+    let lines = lines.map(|line| if line.starts_with("level") { "level = \"l0\"" } else { line });
+    let rigid = parsed(&lines.collect::<Vec<_>>().join("\n"));
+    let [first, second] = [rigid, scene("rig")].map(|scene| truth(&scene, Reflex::None).slips[0]);
     assert_eq!(first.micro_onset_s, first.macro_onset_s);
-    let patch = run(&scene("rig"), 1, Reflex::None, |_, _, _| {}).truth().clone();
-    let second = patch.slips[0];
     assert!(second.macro_onset_s - first.macro_onset_s > 0.02, "{first:?}, {second:?}");
     assert!(second.macro_onset_s - second.micro_onset_s > 0.02, "{second:?}");
 }

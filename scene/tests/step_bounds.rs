@@ -12,17 +12,12 @@ use tenax_scene::stepping::SHIPPED_S;
 const FRICTION: Friction = Friction { mu_s: 0.5, mu_d: 0.4 };
 const MASS_KG: f64 = 0.2;
 
-/// What acts on the mass at an instant.
 struct Load {
-    /// Everything but friction, N.
     force_n: f64,
-    /// On the contact, N.
     normal_n: f64,
-    /// Speed of what it rubs on, m/s.
     surface_m_s: f64,
 }
 
-/// A mass of [`MASS_KG`] that rubs with [`FRICTION`].
 #[derive(Default)]
 struct State {
     t_s: f64,
@@ -32,7 +27,6 @@ struct State {
     contact: RigidCoulomb,
 }
 
-/// Steps the mass for `duration_s` under the load at a time, position and speed, and shows each state to `look`; false ends it.
 fn run(
     start: State,
     dt_s: f64,
@@ -60,7 +54,7 @@ fn within(part: f64, found: f64, right: f64) {
     assert!((found / right - 1.0).abs() < part, "{found} instead of {right}");
 }
 
-/// How far an oscillator swings in the last tenth of 2000 steps, over the first.
+/// Amplitude of an oscillator in the last tenth of 2000 steps over that in the first.
 fn swing(stiffness_n_per_m: f64, damping_ns_per_m: f64, dt_s: f64) -> f64 {
     let (mut first_m, mut last_m, mut n) = (0.0_f64, 0.0_f64, 0);
     let start = State { speed_m_s: 1e-9, ..State::default() };
@@ -77,7 +71,7 @@ fn swing(stiffness_n_per_m: f64, damping_ns_per_m: f64, dt_s: f64) -> f64 {
         } else if n > 1_800 {
             last_m = last_m.max(at_m);
         }
-        // It need not run to infinity.
+        // An unstable run ends here.
         at_m < 1e-6
     });
     if n < 2_000 { f64::INFINITY } else { last_m / first_m }
@@ -97,7 +91,6 @@ fn an_oscillator_is_stable_inside_its_bound_and_not_outside() {
     assert!((bounds::semi_implicit_oscillator_s(0.2, 2_000.0, 0.0) - 0.02).abs() < 1e-15);
 }
 
-/// On an incline of this tangent.
 fn on_incline(tan: f64) -> Load {
     let normal_n = MASS_KG * GRAVITY_M_S2 / (1.0 + tan * tan).sqrt();
     Load { force_n: normal_n * tan, normal_n, surface_m_s: 0.0 }
@@ -135,7 +128,6 @@ fn a_block_slides_from_mu_s_on_and_then_as_mu_d_lets_it() {
     within(1e-3, last.1, 0.5 * speed_m_s);
 }
 
-/// A block on a moving belt, held by a spring. Its undamped limit cycle is a straight line and an arc of a sine.
 #[test]
 fn stick_slip_has_the_amplitude_and_the_period_of_its_limit_cycle() {
     const STIFFNESS_N_PER_M: f64 = 1_000.0;
@@ -143,7 +135,7 @@ fn stick_slip_has_the_amplitude_and_the_period_of_its_limit_cycle() {
     const NORMAL_N: f64 = 2.0;
     let omega_rad_s = (STIFFNESS_N_PER_M / MASS_KG).sqrt();
     let balance_m = FRICTION.mu_d * NORMAL_N / STIFFNESS_N_PER_M;
-    // How far the spring is beyond its sliding balance when the block breaks loose; the arc starts there with the belt's speed.
+    // The spring beyond its sliding balance when the block breaks loose; the arc starts there with the belt's speed.
     let excess_m = (FRICTION.mu_s - FRICTION.mu_d) * NORMAL_N / STIFFNESS_N_PER_M;
     let amplitude_m = excess_m.hypot(BELT_M_S / omega_rad_s);
     // It sticks over twice the excess, and slides the rest of the arc.

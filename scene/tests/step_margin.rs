@@ -29,7 +29,6 @@ fn scene(
     )
 }
 
-/// Runs the scene under `drive` for 0.4 s.
 fn ran(text: &str, drive: MotorDrive) -> Truth {
     let file = SceneFile::parse(text, "drawn.toml").expect("the same numbers were accepted");
     let mut world = World::new(&file, 1);
@@ -39,7 +38,6 @@ fn ran(text: &str, drive: MotorDrive) -> Truth {
     world.truth().clone()
 }
 
-/// Evenly spread over the decades from `low` to `high`.
 fn decades(low: f64, high: f64) -> impl Strategy<Value = f64> {
     (0.0..1.0).prop_map(move |part: f64| low * (high / low).powf(part))
 }

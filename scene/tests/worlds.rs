@@ -7,7 +7,6 @@ mod bases;
 mod brush;
 mod builtin;
 mod determinism;
-mod levels;
 mod objects;
 mod patch;
 mod photoelastic;

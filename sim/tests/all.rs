@@ -12,7 +12,6 @@ mod feedback;
 mod figure;
 mod golden;
 mod gripper;
-mod mixes;
 mod motor;
 mod onsets;
 mod recipes;

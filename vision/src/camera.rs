@@ -1,14 +1,13 @@
-//! One camera of a fingertip: from a picture to what it says about skin and object. Nothing is allocated after `new`.
+//! One camera of a fingertip: from a picture to what it says about skin and object.
 
-use alloc::boxed::Box;
-use core::f32::consts::PI;
+use std::f32::consts::PI;
 
 use crate::force::{Forces, MIDDLE};
 use crate::frame::{Frame, HEIGHT, PIXELS, Plane, WIDTH, plane};
 use crate::markers::{Calibration, Marker, Markers};
 use crate::mask::Mask;
 use crate::motion::{self, ARM_PX, Flow};
-use crate::object::{Config, Running, Sighting, Tracker};
+use crate::object::{Sighting, Tracker};
 use crate::quality::{Blind, Watch};
 use crate::rectify::Rectifier;
 use crate::skin::Skin;
@@ -16,25 +15,19 @@ use crate::skin::Skin;
 /// Markers without which there is no force.
 const MARKERS_MIN: usize = 4;
 
-/// What a camera says of one picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Summary {
-    /// Number of the picture, from 0.
     pub frame: u32,
-    /// Why nothing of the rest should be believed, if so.
+    /// Reason not to believe the rest.
     pub blind: Option<Blind>,
-    /// Markers of the skin; 0 until they are calibrated.
     pub markers: usize,
-    /// Those of them that were found in this picture.
     pub found: usize,
-    /// What the markers say. None while too few are known.
+    /// None while too few markers are known.
     pub forces: Option<Forces>,
     pub object: Option<Sighting>,
-    /// How it moves, if that can be seen.
     pub flow: Option<Flow>,
-    /// How the skin under the object moves: what sticks to it moves as it does.
+    /// Move of the skin under the object.
     pub skin_flow: Option<Flow>,
-    /// How what lies behind the skin moves: the hand moves the other way.
     pub background_flow: Option<Flow>,
 }
 
@@ -56,7 +49,6 @@ pub struct Camera {
 #[derive(Clone, Copy, Debug, Default)]
 struct Heading {
     rad: f32,
-    /// What it is the mean of: pictures, each by how much of the outline lay on the rims.
     pictures: f32,
 }
 
@@ -77,38 +69,35 @@ impl Heading {
     }
 }
 
-/// The same direction of a line, from -pi/2 to pi/2.
 fn half_turn(rad: f32) -> f32 {
     rad - PI * libm::roundf(rad / PI)
 }
 
-impl Camera {
-    /// One that has seen nothing. Its first pictures calibrate the markers: the skin must be unloaded.
-    pub fn new(config: Config) -> Self {
+impl Default for Camera {
+    fn default() -> Self {
         Self {
             grey: plane(),
             before: plane(),
-            calibration: Calibration::new(),
+            calibration: Calibration::default(),
             markers: None,
-            object: Tracker::new(config, Running::default()),
+            object: Tracker::default(),
             watch: Watch::default(),
-            skin: Skin::new(),
+            skin: Skin::default(),
             heading: Heading::default(),
             frames: 0,
         }
     }
+}
 
-    /// From here on the object's middle and angle are those behind this lens.
+impl Camera {
     pub fn rectify(&mut self, lens: Rectifier) {
         self.object.rectify(lens);
     }
 
-    /// Its markers, none until they are calibrated.
     pub fn markers(&self) -> Option<&Markers> {
         self.markers.as_ref()
     }
 
-    /// What follows the object, for whoever draws it.
     pub const fn object(&self) -> &Tracker {
         &self.object
     }
@@ -116,7 +105,7 @@ impl Camera {
     /// Takes a picture that was taken at `taken_ms` and has come at `now_ms`. With `learn`, the object's colours are
     /// learned: until the hand closes.
     pub fn picture(&mut self, frame: &Frame, learn: bool, taken_ms: u32, now_ms: u32) -> Summary {
-        core::mem::swap(&mut self.grey, &mut self.before);
+        std::mem::swap(&mut self.grey, &mut self.before);
         frame.grey(&mut self.grey);
         match &mut self.markers {
             Some(markers) => markers.follow(&self.grey),
@@ -169,7 +158,6 @@ impl Camera {
         }
     }
 
-    /// What is to be thought of the camera while no picture comes.
     pub fn silence(&self, now_ms: u32) -> Option<Blind> {
         self.watch.silence(now_ms)
     }
@@ -177,16 +165,13 @@ impl Camera {
 
 /// Pictures from which the angle of a held object is made.
 const HEADING_PICTURES: f32 = 40.0;
-/// What a picture of an object without long rims counts.
 const MOMENTS_WEIGHT: f32 = 0.01;
 /// Rows of the object that are looked at for its move.
 const OBJECT_ROWS: usize = 2;
 /// Rows of the background that are looked at: one of so many is enough for one move.
 const BACKGROUND_ROWS: usize = 4;
-/// How far around a marker its rim reaches, px.
 const RIM_PX: f32 = 3.0;
 
-/// Where the markers are, their rims included.
 fn skin_of(markers: &[Marker]) -> Mask {
     let mut skin = Mask::EMPTY;
     for marker in markers {
@@ -201,15 +186,11 @@ fn skin_of(markers: &[Marker]) -> Mask {
 
 /// Moving pixels, of the picture, from which an object slips whose own move cannot be seen: it is too plain.
 pub const SLIP_MIN: f32 = 0.001;
-/// How fast an object must move against the skin under it to slip, px a frame. One that sticks seems to move at 0.19 px in one of a
-/// hundred frames, and what moves at 0.3 px is missed in one of four hundred.
+/// Speed of an object against the skin under it from which it slips, px a frame.
 pub const SLIP_MIN_PX: f32 = 0.25;
-/// How fast the background must move for the hand to move, px a frame.
 pub const HAND_FLOW_MIN_PX: f32 = 0.1;
 
 impl Summary {
-    /// Whether the object slips: it moves otherwise than the skin under it does, or, where neither move can be seen, enough
-    /// of it moves.
     pub fn slips(&self) -> bool {
         let Some(object) = self.object.filter(|_| self.blind.is_none()) else { return false };
         match self.slip_px() {
@@ -218,7 +199,7 @@ impl Summary {
         }
     }
 
-    /// How fast the object moves against the skin under it, px a picture. None where that cannot be seen.
+    /// Speed of the object against the skin under it, px a picture. None where that cannot be seen.
     pub fn slip_px(&self) -> Option<f32> {
         self.flow.map(|flow| flow.slip_on(self.skin_flow.unwrap_or_default()))
     }

@@ -9,22 +9,16 @@ use crate::markers::Marker;
 /// The middle of the picture, about which torque is taken.
 pub const MIDDLE: Point = Point { x: (WIDTH - 1) as f32 / 2.0, y: (HEIGHT - 1) as f32 / 2.0 };
 
-/// What all markers together say, px: means over the markers that are known.
+/// Means over the known markers, px; `x` and `y` are shear, `normal` is the size of the move (the paper's normal force).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Forces {
-    /// Moved to the right: shear along x.
     pub x: f32,
-    /// Moved down: shear along the picture's y.
     pub y: f32,
-    /// How far they moved, whatever the direction: the paper's normal force.
     pub normal: f32,
-    /// How far they moved away from the middle of the picture.
     pub spread: f32,
-    /// How much their radius has grown.
     pub growth: f32,
-    /// Torque about the skin's normal, px^2: the move across the way from the middle, times its length.
+    /// Torque about the skin's normal, px^2.
     pub twist: f32,
-    /// Markers that say so.
     pub markers: usize,
 }
 
@@ -64,7 +58,6 @@ impl Forces {
 mod tests {
     use super::*;
     use crate::markers::{RAYS, Shape};
-    use alloc::vec::Vec;
 
     fn markers(moved: impl Fn(f32, f32) -> (f32, f32)) -> Vec<Marker> {
         (0..25)

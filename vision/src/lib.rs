@@ -1,12 +1,8 @@
 //! What a camera behind a clear skin tells (FingerVision 2017): where the markers on the skin are and so what force acts
 //! on it, where an object is, how it lies, and whether it slips.
 //!
-//! Everything works on 320 x 240 pixels, in `quarter/` on 160 x 120. Nothing is allocated after construction, nothing reads a clock, and the crate
-//! needs no `std`: where pictures come from is the caller's business.
-#![no_std]
+//! Pictures are of 320 x 240 pixels. Enter by [`Camera`], which takes a picture and gives a [`Summary`]; time is the caller's.
 #![forbid(unsafe_code)]
-
-extern crate alloc;
 
 pub mod camera;
 pub mod force;
@@ -14,11 +10,12 @@ pub mod frame;
 pub mod loads;
 pub mod markers;
 pub mod mask;
-pub mod motion;
+mod motion;
 pub mod object;
+mod plane_fit;
 pub mod quality;
 pub mod rectify;
-pub mod skin;
+mod skin;
 
 pub use camera::{Camera, Summary};
 pub use frame::{Frame, Plane, Point};

@@ -5,6 +5,7 @@
 
 use crate::force::MIDDLE;
 use crate::markers::{MARKERS_MAX, Marker};
+use crate::plane_fit::PlaneFit;
 
 /// Numbers that shear is linear in: three a marker.
 pub const SHEAR_FEATURES: usize = 3 * MARKERS_MAX;
@@ -15,32 +16,24 @@ const GROWTH_GAIN: f32 = 5.0;
 /// The least markers that say something of the skin.
 const MARKERS_MIN: usize = 6;
 
+/// Below this the markers lie on a line, and no plane goes through their moves.
+const DETERMINANT_MIN: f32 = 1e-3;
+
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Newtons {
-    /// Shear along the picture's x.
     pub x: f32,
-    /// Shear along the picture's y.
     pub y: f32,
-    /// Into the skin.
     pub normal: f32,
 }
 
-/// What the markers' moves are, for a calibration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Features {
-    /// Of each marker: right, down, growth.
     pub shear: [f32; SHEAR_FEATURES],
-    /// Of all together.
     pub normal: [f32; NORMAL_FEATURES],
 }
 
-/// A least-squares plane through values at places: value in the middle, slope to the right, slope down.
-#[derive(Clone, Copy, Debug, Default)]
-struct Plane3([f32; 3]);
-
 impl Features {
-    /// Of a skin's markers. Those that were not found are taken to move as the others around them do: by the best
-    /// plane. None if too few were found.
+    /// Features of a skin's markers; a lost one moves as the plane through the others. None if too few were found.
     pub fn of(markers: &[Marker]) -> Option<Self> {
         let known = || markers.iter().filter(|marker| marker.found.is_ok() && marker.known());
         if known().count() < MARKERS_MIN {
@@ -50,16 +43,19 @@ impl Features {
             |marker: &Marker| ((marker.rest.at.x - MIDDLE.x) / 100.0, (marker.rest.at.y - MIDDLE.y) / 100.0);
         let values: [fn(&Marker) -> f32; 3] =
             [|marker| marker.moved().0, |marker| marker.moved().1, |marker| marker.growth];
-        let mut planes = [Plane3::default(); 3];
+        let mut planes = [[0.0; 3]; 3];
         for (plane, value) in planes.iter_mut().zip(values) {
-            *plane = Plane3::through(known().map(|marker| (place(marker), value(marker))))?;
+            let mut fit = PlaneFit::default();
+            known().for_each(|marker| fit.add(1.0, place(marker), value(marker)));
+            *plane = fit.solve(0.0, DETERMINANT_MIN)?;
         }
+        let at = |plane: &[f32; 3], (x, y): (f32, f32)| plane[0] + plane[1] * x + plane[2] * y;
         let mut shear = [0.0; SHEAR_FEATURES];
         let (mut x, mut y) = (0.0, 0.0);
         for (marker, into) in markers.iter().zip(shear.chunks_exact_mut(3)) {
             let found = marker.found.is_ok() && marker.known();
             for ((slot, plane), value) in into.iter_mut().zip(&planes).zip(values) {
-                *slot = if found { value(marker) } else { plane.at(place(marker)) };
+                *slot = if found { value(marker) } else { at(plane, place(marker)) };
             }
             (x, y) = (x + into[0], y + into[1]);
         }
@@ -68,40 +64,14 @@ impl Features {
         let about = |own: &[f32]| (own[0] - x) * (own[0] - x) + (own[1] - y) * (own[1] - y);
         let spread = shear.chunks_exact(3).take(markers.len()).map(about).sum::<f32>() / n;
         shear.iter_mut().skip(2).step_by(3).for_each(|growth| *growth *= GROWTH_GAIN);
-        let divergence = planes[0].0[1] + planes[1].0[2];
+        let divergence = planes[0][1] + planes[1][2];
         Some(Self { shear, normal: [libm::sqrtf(spread), spread, divergence, libm::hypotf(x, y)] })
-    }
-}
-
-impl Plane3 {
-    fn through(points: impl Iterator<Item = ((f32, f32), f32)>) -> Option<Self> {
-        let (mut n, mut x, mut y, mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
-        let (mut v, mut xv, mut yv) = (0.0f32, 0.0, 0.0);
-        for ((px, py), value) in points {
-            (n, x, y) = (n + 1.0, x + px, y + py);
-            (xx, xy, yy) = (xx + px * px, xy + px * py, yy + py * py);
-            (v, xv, yv) = (v + value, xv + px * value, yv + py * value);
-        }
-        let det = n * (xx * yy - xy * xy) - x * (x * yy - xy * y) + y * (x * xy - xx * y);
-        if det < 1e-3 {
-            return None;
-        }
-        let a = v * (xx * yy - xy * xy) - x * (xv * yy - xy * yv) + y * (xv * xy - xx * yv);
-        let b = n * (xv * yy - xy * yv) - v * (x * yy - xy * y) + y * (x * yv - xv * y);
-        let c = n * (xx * yv - xv * xy) - x * (x * yv - xv * y) + v * (x * xy - xx * y);
-        Some(Self([a / det, b / det, c / det]))
-    }
-
-    fn at(&self, (x, y): (f32, f32)) -> f32 {
-        self.0[0] + self.0[1] * x + self.0[2] * y
     }
 }
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Loads {
-    /// Weights of the shear's features, for x and for y, N.
     pub shear: [[f32; 2]; SHEAR_FEATURES],
-    /// Weights of the normal force's, N.
     pub normal: [f32; NORMAL_FEATURES],
 }
 
@@ -123,7 +93,6 @@ mod tests {
     use super::*;
     use crate::frame::Point;
     use crate::markers::{RAYS, Shape};
-    use alloc::vec::Vec;
 
     fn markers() -> Vec<Marker> {
         let at = |at: u16| Point { x: 60.0 + 50.0 * f32::from(at % 5), y: 40.0 + 40.0 * f32::from(at / 5) };
@@ -148,18 +117,5 @@ mod tests {
         }
         markers[5..].iter_mut().for_each(|marker| marker.found = Err(crate::markers::Failure::Blobs));
         assert_eq!(Features::of(&markers), None);
-    }
-
-    #[test]
-    fn weights_make_newtons() {
-        let mut markers = markers();
-        markers.iter_mut().for_each(|marker| marker.at.x += 2.0);
-        let features = Features::of(&markers).unwrap();
-        let mut loads = Loads { shear: [[0.0; 2]; SHEAR_FEATURES], normal: [0.0, 0.0, 0.0, 0.5] };
-        loads.shear.iter_mut().take(75).step_by(3).for_each(|weights| *weights = [0.04, -0.02]);
-        let force = loads.newtons(&features);
-        assert!(
-            (force.x - 2.0).abs() < 1e-3 && (force.y + 1.0).abs() < 1e-3 && (force.normal - 1.0).abs() < 1e-3
-        );
     }
 }

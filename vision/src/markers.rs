@@ -7,20 +7,17 @@ mod window;
 use crate::frame::{Plane, Point};
 
 pub use self::calibration::{Calibration, FRAMES as CALIBRATION_FRAMES};
-pub use self::outline::{Edge, Fit, Outline, RAYS, irregularity};
-pub use self::window::{Blob, Levels, SIDE, Window};
+pub use self::outline::RAYS;
+use self::outline::{Fit, Outline};
+use self::window::{SIDE, Window};
 
 pub const MARKERS_MAX: usize = 64;
 
-/// The farthest that a marker may be from where it was found last, px: farther is a jump, not a force.
 const STEP_MAX_PX: f32 = 2.5;
-/// The most that its radius may differ from what it was found with last, px.
 const GROWTH_MAX_PX: f32 = 1.0;
 /// Failures in a row after which it is looked for where it was calibrated.
 const FAILURES_MAX: u8 = 3;
-/// The farthest that a marker may be from where it was calibrated, px.
 const MOVE_MAX_PX: f32 = 14.0;
-/// The most that its move may differ from the median of its neighbours', px: skin that is pressed pulls on all around it.
 const APART_MAX_PX: f32 = 2.5;
 /// Markers around one whose moves are compared with its own.
 const NEIGHBOURS: usize = 6;
@@ -32,39 +29,27 @@ const FAILED_SHARE_FRAMES: u32 = 6;
 /// Readings in a row, each near the one before, that a marker must give after that before it counts again.
 const PROBATION: u8 = 3;
 
-/// Why a marker was not found in a frame.
+/// Reason why a marker was not found in a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Failure {
-    /// The number of dark pixels in its window is not nearly its own: it is covered, or something dark is behind it.
     DarkPixels,
-    /// Not one blob of its kind but none or several.
     Blobs,
-    /// Too far from where it was.
     Moved,
-    /// Its size changed too much.
     Resized,
-    /// Too little of its outline stands out.
     Outline,
-    /// Its neighbours moved otherwise.
     Apart,
-    /// It is seen again, and not yet for long enough to be believed.
     Probation,
 }
 
-/// What is known of a marker at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shape {
-    /// Its middle.
     pub at: Point,
-    /// How far its outline is from there along each ray, px.
     pub radii: [f32; RAYS],
     pub area: u32,
-    /// Dark pixels in its window, others' included.
     pub dark_pixels: u32,
 }
 
 impl Shape {
-    /// The mean of its radii, px.
     pub fn radius(&self) -> f32 {
         self.radii.iter().sum::<f32>() / RAYS as f32
     }
@@ -72,32 +57,24 @@ impl Shape {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Marker {
-    /// As it was calibrated.
     pub rest: Shape,
-    /// Where it was found last.
     pub at: Point,
-    /// How much its radius has grown since it was calibrated, px.
     pub growth: f32,
-    /// What the last frame gave.
     pub found: Result<(), Failure>,
     failures: u8,
     probation: u8,
-    /// Share of failed frames, 65536 is all.
     failed_share: u16,
 }
 
 impl Marker {
-    /// One that lies as it was calibrated.
     pub fn new(rest: Shape) -> Self {
         Self { rest, at: rest.at, growth: 0.0, found: Ok(()), failures: 0, probation: 0, failed_share: 0 }
     }
 
-    /// How far it has moved since it was calibrated, px: to the right, down.
     pub fn moved(&self) -> (f32, f32) {
         (self.at.x - self.rest.at.x, self.at.y - self.rest.at.y)
     }
 
-    /// Whether its place is known well enough for a force: found in one of the last few frames, and not on probation.
     pub fn known(&self) -> bool {
         self.failures <= FAILURES_MAX && self.probation == 0 && self.failed_share >> 8 <= FAILED_SHARE_MAX
     }
@@ -127,7 +104,6 @@ impl Marker {
         self.failed_share = self.failed_share - (self.failed_share >> FAILED_SHARE_FRAMES) + failed;
     }
 
-    /// Looks for it in a picture by itself, `moved` from where it was calibrated.
     fn place(&mut self, grey: &Plane, moved: (f32, f32)) {
         let near = Point { x: self.rest.at.x + moved.0, y: self.rest.at.y + moved.1 };
         self.found = find(grey, &self.rest, near, 0.0, MOVE_MAX_PX).map(|(at, growth)| {
@@ -136,7 +112,6 @@ impl Marker {
         self.failures = if self.found.is_ok() { 0 } else { FAILURES_MAX + 1 };
     }
 
-    /// What was found is not the marker: it is looked for at rest again.
     fn disown(&mut self, failure: Failure) {
         (self.found, self.failures, self.probation) = (Err(failure), FAILURES_MAX + 1, 0);
         (self.at, self.growth) = (self.rest.at, 0.0);
@@ -145,41 +120,31 @@ impl Marker {
 
 #[derive(Clone, Debug)]
 pub struct Markers {
-    markers: [Marker; MARKERS_MAX],
-    neighbours: [[u8; NEIGHBOURS]; MARKERS_MAX],
-    count: usize,
+    markers: Vec<Marker>,
+    /// The nearest others of each.
+    neighbours: Vec<Vec<u8>>,
 }
 
 impl Markers {
     pub fn new(calibration: &Calibration) -> Self {
-        let nothing = Shape { at: Point::default(), radii: [0.0; RAYS], area: 0, dark_pixels: 0 };
-        let mut markers = [Marker::new(nothing); MARKERS_MAX];
-        let count = calibration.markers(&mut markers);
-        let mut neighbours = [[0; NEIGHBOURS]; MARKERS_MAX];
-        for (at, near) in neighbours[..count].iter_mut().enumerate() {
-            let mut order: [u8; MARKERS_MAX] = core::array::from_fn(|number| number as u8);
-            let apart = |other: u8| {
-                if usize::from(other) == at {
-                    f32::MAX
-                } else {
-                    markers[usize::from(other)].rest.at.distance(markers[at].rest.at)
-                }
+        let markers = calibration.markers();
+        let nearest = |at: usize| {
+            let apart = |other: u8| match usize::from(other) {
+                other if other == at => f32::MAX,
+                other => markers[other].rest.at.distance(markers[at].rest.at),
             };
-            order[..count].sort_unstable_by(|&a, &b| apart(a).total_cmp(&apart(b)));
-            near.copy_from_slice(&order[..NEIGHBOURS]);
-        }
-        Self { markers, neighbours, count }
+            let mut order: Vec<u8> = (0..markers.len() as u8).collect();
+            order.sort_unstable_by(|&a, &b| apart(a).total_cmp(&apart(b)));
+            order.truncate(NEIGHBOURS);
+            order
+        };
+        Self { neighbours: (0..markers.len()).map(nearest).collect(), markers }
     }
 
-    /// Looks for each in a frame.
-    // By itself in the program, so that its instructions can be counted; so are the object and the moves.
-    #[inline(never)]
+    /// Looks for each in the next picture.
     pub fn follow(&mut self, grey: &Plane) {
-        let count = self.count;
-        for marker in &mut self.markers[..count] {
-            marker.follow(grey);
-        }
-        for at in 0..count {
+        self.markers.iter_mut().for_each(|marker| marker.follow(grey));
+        for at in 0..self.markers.len() {
             if self.markers[at].found.is_ok() && self.apart(at) > APART_MAX_PX {
                 self.markers[at].disown(Failure::Apart);
             }
@@ -189,14 +154,13 @@ impl Markers {
     /// Looks for each in a picture that has nothing to do with the one before: a marker may be anywhere within half a window
     /// of where it was calibrated, and what its neighbours say helps to find it.
     pub fn locate(&mut self, grey: &Plane) {
-        let count = self.count;
-        for marker in &mut self.markers[..count] {
+        for marker in &mut self.markers {
             *marker = Marker::new(marker.rest);
             marker.place(grey, (0.0, 0.0));
         }
         // Those that are apart from their neighbours, or were not found, are looked for where those say.
         for _ in 0..2 {
-            for at in 0..count {
+            for at in 0..self.markers.len() {
                 let Some((x, y)) = self.neighbours_moved(at) else { continue };
                 let (own_x, own_y) = self.markers[at].moved();
                 if self.markers[at].found.is_err() || libm::hypotf(own_x - x, own_y - y) > APART_MAX_PX {
@@ -210,7 +174,6 @@ impl Markers {
         }
     }
 
-    /// How far a marker's move is from the median of its neighbours', px; 0 if too few of them are known.
     fn apart(&self, at: usize) -> f32 {
         let (x, y) = self.markers[at].moved();
         self.neighbours_moved(at).map_or(0.0, |near| libm::hypotf(x - near.0, y - near.1))
@@ -218,35 +181,28 @@ impl Markers {
 
     /// The median move of a marker's neighbours, px; None if too few of them are known.
     fn neighbours_moved(&self, at: usize) -> Option<(f32, f32)> {
-        let (mut xs, mut ys) = ([0.0; NEIGHBOURS], [0.0; NEIGHBOURS]);
-        let mut known = 0;
-        for &near in &self.neighbours[at] {
-            let near = &self.markers[..self.count].get(usize::from(near));
-            if let Some(near) = near.filter(|near| near.found.is_ok() && near.known()) {
-                (xs[known], ys[known]) = near.moved();
-                known += 1;
-            }
-        }
-        if known < 3 {
+        let near = self.neighbours[at].iter().map(|&near| &self.markers[usize::from(near)]);
+        let known = near.filter(|near| near.found.is_ok() && near.known());
+        let (mut xs, mut ys): (Vec<f32>, Vec<f32>) = known.map(Marker::moved).unzip();
+        if xs.len() < 3 {
             return None;
         }
         let median = |values: &mut [f32]| {
             values.sort_unstable_by(f32::total_cmp);
-            (values[known / 2] + values[(known - 1) / 2]) / 2.0
+            (values[values.len() / 2] + values[(values.len() - 1) / 2]) / 2.0
         };
-        Some((median(&mut xs[..known]), median(&mut ys[..known])))
+        Some((median(&mut xs), median(&mut ys)))
     }
 }
 
-impl core::ops::Deref for Markers {
+impl std::ops::Deref for Markers {
     type Target = [Marker];
 
     fn deref(&self) -> &[Marker] {
-        &self.markers[..self.count]
+        &self.markers
     }
 }
 
-/// Where a marker of this shape is now, and how much its radius has grown, if it was at `last` before.
 fn find(
     grey: &Plane,
     shape: &Shape,
@@ -254,7 +210,7 @@ fn find(
     grown: f32,
     step_max_px: f32,
 ) -> Result<(Point, f32), Failure> {
-    // Where the blob is not alone, the outline may still stand out: it is looked for where it was last.
+    // The outline may stand out where the blob is not alone: it is looked for where it was last.
     let (near, excuse) = match blob(grey, shape, last) {
         Ok(at) => (at, Failure::Outline),
         Err(failure) => (last, failure),
@@ -284,7 +240,6 @@ const CONTRAST_MIN: u8 = 16;
 /// the marker stands alone is good enough, for the outline is looked for afterwards.
 const CUTS: [u16; 3] = [4, 3, 2];
 
-/// The middle of the one blob in the window around `last` that can be this marker.
 fn blob(grey: &Plane, shape: &Shape, last: Point) -> Result<Point, Failure> {
     let window = Window::around(grey, last);
     let levels = window.levels();
@@ -299,9 +254,8 @@ fn blob(grey: &Plane, shape: &Shape, last: Point) -> Result<Point, Failure> {
         if 2 * count < shape.area || count > 2 * shape.dark_pixels + shape.area {
             continue;
         }
-        let mut blobs = [Blob::NONE; 12];
-        let found = window.blobs(&dark, shape.area / 2, &mut blobs);
-        let mut alike = blobs[..found].iter().filter(|blob| {
+        let blobs = window.blobs(&dark, shape.area / 2);
+        let mut alike = blobs.iter().filter(|blob| {
             !blob.cut && blob.area <= 2 * shape.area && blob.at.distance(last) < SIDE as f32 / 2.0
         });
         match (alike.next(), alike.next()) {

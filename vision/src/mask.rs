@@ -3,20 +3,14 @@
 mod grow;
 mod pieces;
 
-use core::ops::Range;
+use std::ops::Range;
 
 use crate::frame::{Frame, HEIGHT, PIXELS, Point, WIDTH};
 
-/// Pixels in a word of a row.
-#[cfg(not(feature = "quarter"))]
-pub type Word = u64;
-/// Pixels in a word of a row: a row is a whole number of them.
-#[cfg(feature = "quarter")]
-pub type Word = u32;
-pub const BITS: usize = Word::BITS as usize;
-pub const WORDS: usize = WIDTH / BITS;
+type Word = u64;
+const BITS: usize = Word::BITS as usize;
+const WORDS: usize = WIDTH / BITS;
 
-/// A set of pixels.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Mask {
     rows: [[Word; WORDS]; HEIGHT],
@@ -31,21 +25,18 @@ impl Default for Mask {
 impl Mask {
     pub const EMPTY: Self = Self { rows: [[0; WORDS]; HEIGHT] };
 
-    /// Its rows, the leftmost pixel of a word in the lowest bit.
-    pub const fn rows(&self) -> &[[Word; WORDS]; HEIGHT] {
+    pub const fn rows(&self) -> &[[u64; WORDS]; HEIGHT] {
         &self.rows
     }
 
-    pub fn words_mut(&mut self) -> impl Iterator<Item = &mut Word> {
+    fn words_mut(&mut self) -> impl Iterator<Item = &mut Word> {
         self.rows.iter_mut().flatten()
     }
 
-    /// The pixels whose byte is 1 and not 0.
     pub fn pack(&mut self, bytes: &[u8; PIXELS]) {
         self.words_mut().zip(bytes.as_chunks().0).for_each(|(word, bytes)| *word = packed(bytes));
     }
 
-    /// 1 for a pixel that is in the set, 0 for another.
     pub fn unpack(&self, bytes: &mut [u8; PIXELS]) {
         for (word, bytes) in self.rows.iter().flatten().zip(bytes.chunks_exact_mut(BITS)) {
             for (eight, bits) in bytes.chunks_exact_mut(8).zip(word.to_le_bytes()) {
@@ -61,9 +52,8 @@ impl Mask {
         self.rows[y][x / BITS] |= 1 << (x % BITS);
     }
 
-    /// Puts in the pixels of some columns of some rows.
     pub fn insert_block(&mut self, columns: Range<usize>, rows: Range<usize>) {
-        let row: [Word; WORDS] = core::array::from_fn(|word| {
+        let row: [Word; WORDS] = std::array::from_fn(|word| {
             // Those of its pixels that are in no column from here on.
             let below = |end: usize| match end.saturating_sub(BITS * word) {
                 all if all >= BITS => Word::MAX,
@@ -79,7 +69,6 @@ impl Mask {
         self.rows[y][x / BITS] >> (x % BITS) & 1 != 0
     }
 
-    /// The pixels whose place is inside a polygon of these corners, px.
     pub fn of_outline(corners: &[(f32, f32)]) -> Self {
         let mut mask = Self::EMPTY;
         for (x, y) in (0..HEIGHT).flat_map(|y| (0..WIDTH).map(move |x| (x, y))) {
@@ -95,7 +84,6 @@ impl Mask {
         mask
     }
 
-    /// How well two sets agree: pixels in both, for each that is in one of them, 0 to 1.
     pub fn overlap(&self, other: &Self) -> f32 {
         let words = || self.rows.iter().flatten().zip(other.rows.iter().flatten());
         let both: u32 = words().map(|(own, other)| (own & other).count_ones()).sum();
@@ -145,20 +133,17 @@ impl Mask {
         }
     }
 
-    /// Keeps one row of `keep`.
     pub fn thin(&mut self, keep: usize) {
         let gone = self.rows.iter_mut().enumerate().filter(|(y, _)| y % keep != 0);
         gone.for_each(|(_, row)| *row = [0; WORDS]);
     }
 
-    /// Takes out what is in it and puts in what is not.
     pub fn invert(&mut self) {
         for word in self.words_mut() {
             *word = !*word;
         }
     }
 
-    /// Puts in what it surrounds: every pixel from which the border cannot be reached but through it.
     pub fn fill_holes(&mut self) {
         let mut free = self.clone();
         free.invert();
@@ -172,52 +157,28 @@ impl Mask {
         let mut grown = true;
         while grown {
             grown = false;
-            for step in 0..2 * HEIGHT - 2 {
-                // Down, then up.
-                let (from, to) = if step < HEIGHT - 1 {
-                    (step, step + 1)
-                } else {
-                    (2 * HEIGHT - 2 - step, 2 * HEIGHT - 3 - step)
-                };
-                let mut seed = outside.rows[to];
-                let mut new = 0;
-                for (word, seed) in seed.iter_mut().enumerate() {
-                    let reached = outside.rows[from][word] & free.rows[to][word];
-                    new |= reached & !*seed;
-                    *seed |= reached;
-                }
-                if new != 0 {
-                    (outside.rows[to], grown) = (flood(&seed, &free.rows[to]), true);
-                }
+            for y in 1..HEIGHT {
+                grown |= outside.grow(y - 1, y, &free);
+            }
+            for y in (1..HEIGHT).rev() {
+                grown |= outside.grow(y, y - 1, &free);
             }
         }
         outside.invert();
         *self = outside;
     }
 
-    /// Keeps the pixels whose colour, red, green and blue, is `kept`.
     #[inline]
     pub fn keep(&mut self, frame: &Frame, kept: impl Fn(u8, u8, u8) -> bool) {
         let colours = [frame.red, frame.green, frame.blue].map(|plane| plane.as_chunks::<BITS>().0);
         for (number, word) in self.words_mut().enumerate().filter(|(_, word)| **word != 0) {
             let [red, green, blue] = colours.map(|plane| &plane[number]);
-            let is_kept = |bit: usize| kept(red[bit], green[bit], blue[bit]);
-            if word.count_ones() > Word::BITS / 4 {
-                // All of them at once is faster than one after the other.
-                let bytes: [u8; BITS] = core::array::from_fn(|bit| u8::from(is_kept(bit)));
-                *word &= packed(&bytes);
-            } else {
-                let mut left = *word;
-                while left != 0 {
-                    let bit = left.trailing_zeros();
-                    *word ^= Word::from(!is_kept(bit as usize)) << bit;
-                    left &= left - 1;
-                }
-            }
+            let bytes: [u8; BITS] =
+                std::array::from_fn(|bit| u8::from(kept(red[bit], green[bit], blue[bit])));
+            *word &= packed(&bytes);
         }
     }
 
-    /// Calls `each` with every pixel's place in a plane.
     #[inline]
     pub fn for_each(&self, mut each: impl FnMut(usize)) {
         for (number, &word) in self.rows.iter().flatten().enumerate() {
@@ -229,75 +190,40 @@ impl Mask {
         }
     }
 
-    /// Calls `each` with the place of every `every`th pixel.
     #[inline]
     pub fn for_every(&self, every: u32, mut each: impl FnMut(usize)) {
-        // Pixels until the next.
-        let mut until = every - 1;
-        for (number, &word) in self.rows.iter().flatten().enumerate().filter(|(_, word)| **word != 0) {
-            let (mut left, mut count) = (word, word.count_ones());
-            while until < count {
-                (0..until).for_each(|_| left &= left - 1);
-                each(BITS * number + left.trailing_zeros() as usize);
-                left &= left - 1;
-                (count, until) = (count - until - 1, every - 1);
+        let mut count = 0;
+        self.for_each(|at| {
+            count += 1;
+            if count % every == 0 {
+                each(at);
             }
-            until -= count;
-        }
+        });
     }
 
-    /// How it lies. None of an empty set.
+    /// None of an empty set.
     pub fn moments(&self) -> Option<Moments> {
-        let (mut n, mut sx, mut sy, mut sxx, mut sxy, mut syy) = (0u64, 0, 0, 0, 0, 0);
-        for (y, row) in self.rows.iter().enumerate() {
-            let (mut count, mut sum, mut squares) = (0u64, 0u64, 0u64);
-            for (place, &word) in row.iter().enumerate() {
-                for (byte, bits) in word.to_le_bytes().into_iter().enumerate().filter(|(_, bits)| *bits != 0)
-                {
-                    let (ones, bit_sum, bit_squares) = BYTES[usize::from(bits)];
-                    let (ones, bit_sum, bit_squares) =
-                        (u64::from(ones), u64::from(bit_sum), u64::from(bit_squares));
-                    let left = (BITS * place + 8 * byte) as u64;
-                    count += ones;
-                    sum += ones * left + bit_sum;
-                    squares += ones * left * left + 2 * left * bit_sum + bit_squares;
-                }
-            }
-            let y = y as u64;
-            (n, sx, sy) = (n + count, sx + sum, sy + count * y);
-            (sxx, sxy, syy) = (sxx + squares, sxy + sum * y, syy + count * y * y);
-        }
-        if n == 0 {
-            return None;
-        }
-        let mean = |sum: u64| sum as f64 / n as f64;
-        let (x, y) = (mean(sx), mean(sy));
-        let (xx, xy, yy) = (mean(sxx) - x * x, mean(sxy) - x * y, mean(syy) - y * y);
-        Some(Moments {
-            area: n as u32,
-            middle: Point { x: x as f32, y: y as f32 },
-            xx: xx as f32,
-            xy: xy as f32,
-            yy: yy as f32,
-        })
+        let mut sums = [0u64; 6];
+        self.for_each(|at| {
+            let (x, y) = ((at % WIDTH) as u64, (at / WIDTH) as u64);
+            sums.iter_mut().zip([1, x, y, x * x, x * y, y * y]).for_each(|(sum, term)| *sum += term);
+        });
+        Moments::of(sums.map(|sum| sum as f64), Point::default())
     }
 }
 
-/// Bytes that are 0 or 1 as the bits of a word.
 #[inline]
 fn packed(bytes: &[u8; BITS]) -> Word {
     let eights = bytes.as_chunks::<8>().0.iter().enumerate();
     eights.map(|(place, eight)| Word::from(eight_bits(*eight)) << (8 * place)).sum()
 }
 
-/// Eight bytes that are 0 or 1 as the bits of one, the first in the lowest bit.
 #[inline]
-pub fn eight_bits(bytes: [u8; 8]) -> u8 {
+pub(crate) fn eight_bits(bytes: [u8; 8]) -> u8 {
     // They slide into the top byte.
     (u64::from_le_bytes(bytes).wrapping_mul(0x0102_0408_1020_4080) >> 56) as u8
 }
 
-/// How many of each pixel and its neighbours to the left and right are set: the bits of one and of two.
 fn three(row: &[Word; WORDS]) -> ([Word; WORDS], [Word; WORDS]) {
     let (mut ones, mut twos) = ([0; WORDS], [0; WORDS]);
     for word in 0..WORDS {
@@ -308,7 +234,6 @@ fn three(row: &[Word; WORDS]) -> ([Word; WORDS], [Word; WORDS]) {
     (ones, twos)
 }
 
-/// The sum of three bits, for each pixel of a word: bit of one, bit of two.
 const fn full_adder(a: Word, b: Word, c: Word) -> (Word, Word) {
     (a ^ b ^ c, a & b | c & (a ^ b))
 }
@@ -332,47 +257,39 @@ fn flood(seed: &[Word; WORDS], free: &[Word; WORDS]) -> [Word; WORDS] {
     };
     let right = up(seed, free);
     let left = mirrored(&up(&mirrored(seed), &mirrored(free)));
-    core::array::from_fn(|word| right[word] | left[word])
+    std::array::from_fn(|word| right[word] | left[word])
 }
 
-/// Of each byte: its ones, the sum of their places, and the sum of their squares.
-const BYTES: [(u8, u8, u8); 256] = {
-    let mut table = [(0, 0, 0); 256];
-    let mut byte = 0;
-    while byte < 256 {
-        let mut bit = 0;
-        while bit < 8 {
-            if byte >> bit & 1 != 0 {
-                let (ones, sum, squares) = table[byte];
-                table[byte] = (ones + 1, sum + bit, squares + bit * bit);
-            }
-            bit += 1;
-        }
-        byte += 1;
-    }
-    table
-};
-
-/// How a set of pixels lies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moments {
     pub area: u32,
     pub middle: Point,
-    /// Second moments about the middle, px^2.
     pub xx: f32,
-    /// The mixed one.
     pub xy: f32,
-    /// The one of the rows.
     pub yy: f32,
 }
 
 impl Moments {
+    /// From the sums of 1, x, y, x^2, xy and y^2 of places about `origin`. None if the first is 0.
+    pub(crate) fn of([n, sx, sy, sxx, sxy, syy]: [f64; 6], origin: Point) -> Option<Self> {
+        if n == 0.0 {
+            return None;
+        }
+        let (x, y) = (sx / n, sy / n);
+        Some(Self {
+            area: n as u32,
+            middle: Point { x: origin.x + x as f32, y: origin.y + y as f32 },
+            xx: (sxx / n - x * x) as f32,
+            xy: (sxy / n - x * y) as f32,
+            yy: (syy / n - y * y) as f32,
+        })
+    }
+
     /// The direction of its long axis, radians from -pi/2 to pi/2, from x towards y (down).
     pub fn angle_rad(&self) -> f32 {
         0.5 * libm::atan2f(2.0 * self.xy, self.xx - self.yy)
     }
 
-    /// How much longer it is than wide, 0 for a disc and 1 for a line: below 0.3 its angle says little.
     pub fn eccentricity(&self) -> f32 {
         let both = self.xx + self.yy;
         let apart = libm::hypotf(self.xx - self.yy, 2.0 * self.xy);

@@ -7,18 +7,13 @@
 use crate::frame::{HEIGHT, PIXELS, Plane, Point, WIDTH};
 use crate::mask::Mask;
 
-/// A move, px a frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Flow {
-    /// To the right, of the place that it is asked for.
     pub x: f32,
-    /// Down.
     pub y: f32,
-    /// Turn from x towards y, in the way of a place [`ARM_PX`] away.
     pub turn: f32,
 }
 
-/// How far away from the middle a turn is measured, px.
 pub const ARM_PX: f32 = 60.0;
 /// Slope below which a pixel is noise, grey levels over two pixels.
 const SLOPE_MIN: i32 = 8;
@@ -26,20 +21,17 @@ const SLOPE_MIN: i32 = 8;
 const PIXELS_MIN: usize = 60;
 /// Pixels that are looked at: of more, every second, third, ... one.
 const SAMPLES_MAX: usize = PIXELS * 4 / 75;
-/// Of which so many are reckoned with at once.
 const LANES: usize = 8;
 const ROUNDS: usize = 3;
 /// A change that is not explained and is less than this counts as the rest does, grey levels.
 const NOISE: f32 = 4.0;
 /// Unknowns: right, down, turn, gain.
 const UNKNOWNS: usize = 4;
-/// How much farther than the skin around it, as its markers tell, what sticks to the skin may move: the contact moves most.
 const CARRIED_MAX: f32 = 1.5;
 /// A pivot below this part of its diagonal says that the unknowns cannot be told apart.
 const PIVOT_MIN: f32 = 0.02;
 
 impl Flow {
-    /// How fast what moves so slips on skin that moves as `skin` says, px: what the skin cannot have carried it.
     pub fn slip_on(self, skin: Self) -> f32 {
         let size = skin.x * skin.x + skin.y * skin.y;
         let along = self.x * skin.x + self.y * skin.y;
@@ -50,7 +42,6 @@ impl Flow {
 
 /// The move that best explains how the pixels of `object` changed, about `middle`. None if they are too plain for that. Right for
 /// moves of a pixel or two; larger ones come out too small, with the right sign.
-#[inline(never)]
 pub fn flow(before: &Plane, now: &Plane, object: &Mask, middle: Point) -> Option<Flow> {
     let mut samples = Samples::EMPTY;
     let every = object.count() / SAMPLES_MAX as u32 + 1;
@@ -67,29 +58,25 @@ pub fn flow(before: &Plane, now: &Plane, object: &Mask, middle: Point) -> Option
     Some(Flow { x, y, turn })
 }
 
-/// Nine pixels around one, row by row.
 #[inline]
 fn around(plane: &Plane, at: usize) -> [i32; 9] {
     let Some(near) = plane.get(at - WIDTH - 1..).and_then(|rest| rest.first_chunk::<{ 2 * WIDTH + 3 }>())
     else {
         return [0; 9];
     };
-    core::array::from_fn(|place| i32::from(near[place / 3 * WIDTH + place % 3]))
+    std::array::from_fn(|place| i32::from(near[place / 3 * WIDTH + place % 3]))
 }
 
-/// How they rise to the right and down: sums in which the nearer ones count twice.
 #[inline]
 fn slope([a, b, c, d, _, f, g, h, i]: [i32; 9]) -> (i32, i32) {
     (c + 2 * f + i - a - 2 * d - g, g + 2 * h + i - a - 2 * b - c)
 }
 
-/// All of them, the nearer ones counting more.
 #[inline]
 fn sum([a, b, c, d, e, f, g, h, i]: [i32; 9]) -> i32 {
     a + c + g + i + 2 * (b + d + f + h) + 4 * e
 }
 
-/// What each pixel says of the move: `row * unknowns = change`, a column each.
 struct Samples {
     rows: [[f32; SAMPLES_MAX]; UNKNOWNS],
     changes: [f32; SAMPLES_MAX],
@@ -106,16 +93,15 @@ impl Samples {
         if x == 0 || y == 0 || x == WIDTH - 1 || y == HEIGHT - 1 || self.count == SAMPLES_MAX {
             return;
         }
-        // Of both pictures: the slope of one alone would be off by half the move. Neighbours count, too: noise in the slope makes a move
-        // look small.
+        // The slope of one picture alone would be off by half the move, and noise in it makes a move look small.
         let (now, before) = (around(now, at), around(before, at));
-        let both = core::array::from_fn(|place| now[place] + before[place]);
+        let both = std::array::from_fn(|place| now[place] + before[place]);
         let (gx, gy) = slope(both);
         if gx.abs() + gy.abs() < 8 * SLOPE_MIN {
             return;
         }
         let (gx, gy) = (gx as f32 / 16.0, gy as f32 / 16.0);
-        let change = sum(core::array::from_fn(|place| now[place] - before[place])) as f32 / 16.0;
+        let change = sum(std::array::from_fn(|place| now[place] - before[place])) as f32 / 16.0;
         let (dx, dy) = ((x as f32 - middle.x) / ARM_PX, (y as f32 - middle.y) / ARM_PX);
         let row = [-gx, -gy, gx * dy - gy * dx, both[4] as f32 / 512.0];
         self.rows.iter_mut().zip(row).for_each(|(column, value)| column[self.count] = value);
@@ -129,10 +115,10 @@ impl Samples {
         found: Option<&[f32; UNKNOWNS]>,
     ) -> ([[f32; UNKNOWNS]; UNKNOWNS], [f32; UNKNOWNS]) {
         let (mut a, mut b) = ([[[0.0f32; LANES]; UNKNOWNS]; UNKNOWNS], [[0.0f32; LANES]; UNKNOWNS]);
-        // What is past the last sample is 0 and adds nothing.
+        // Samples past the last are 0.
         for first in (0..self.count).step_by(LANES) {
             let lanes = |column: &[f32; SAMPLES_MAX]| -> [f32; LANES] {
-                core::array::from_fn(|lane| column[first + lane])
+                std::array::from_fn(|lane| column[first + lane])
             };
             let (rows, change) = (self.rows.each_ref().map(lanes), lanes(&self.changes));
             let mut weight = [1.0; LANES];
@@ -144,7 +130,7 @@ impl Samples {
                 }
             }
             for i in 0..UNKNOWNS {
-                let own: [f32; LANES] = core::array::from_fn(|lane| weight[lane] * rows[i][lane]);
+                let own: [f32; LANES] = std::array::from_fn(|lane| weight[lane] * rows[i][lane]);
                 let add = |sums: &mut [f32; LANES], of: &[f32; LANES]| {
                     (0..LANES).for_each(|lane| sums[lane] += own[lane] * of[lane]);
                 };
@@ -186,7 +172,6 @@ mod tests {
 
     const MIDDLE: Point = Point { x: 150.0, y: 110.0 };
 
-    /// A pattern that has moved and turned, in another light.
     fn draw(moved: Flow, gain: f32, into: &mut Plane) {
         let (sin, cos) = (libm::sinf(moved.turn / ARM_PX), libm::cosf(moved.turn / ARM_PX));
         for (at, level) in into.iter_mut().enumerate() {

@@ -1,12 +1,10 @@
 //! The object behind the skin, and whether it slips (FingerVision 2017, section III).
 //!
-//! The paper takes for the object whatever has the colours of what moved. A white card before a white wall has no colour of
-//! its own, so a pixel must also differ from what the camera remembers there ([`Scene`]), and the colours that are taken
-//! away from the object's are those that it now hides. Either alone is not enough: a person who walks by behind the skin
-//! differs from the scene, and a wall has the colours of a card.
+//! An object has the colours of what moved, less those that it now hides, and differs from the remembered scene. Either alone is not
+//! enough: a person behind the skin differs from the scene, and a wall has the colours of a card.
 
 mod axis;
-pub mod colour;
+mod colour;
 mod cut;
 mod ghost;
 mod hand;
@@ -14,34 +12,32 @@ mod model;
 mod movement;
 mod scene;
 
-use alloc::boxed::Box;
-
 use crate::frame::{Frame, PIXELS, Plane, Point, WIDTH, plane};
 use crate::mask::{Mask, Moments};
 use crate::rectify::Rectifier;
 
 use self::colour::{BINS, Bins};
-pub use self::model::{Histogram, ObjectModel};
-pub use self::movement::Running;
-pub use self::scene::Scene;
+use self::model::{Histogram, ObjectModel};
+use self::movement::Running;
+use self::scene::Scene;
 
-/// What differs from the scene while there is an object is believed to be the scene in one frame of so many.
+/// Pixels that differ from the scene are believed to be the scene in one frame of so many while an object is seen.
 const DOUBT_FRAMES: u32 = 32;
-/// And while there is none.
+/// The same while no object is seen.
 const DOUBT_FRAMES_EMPTY: u32 = 4;
 /// Every so many pixels of the scene stand for all of it: a prime, so that no column is taken again and again.
 const SAMPLE: usize = 13;
-/// Half the width of what is no part of a larger object, px: a spot of the background that leans on it.
+/// Half the width of what is no part of a larger object, px.
 const SPUR_PX: usize = 5;
-/// How far a held object moves from one frame to the next at most, px.
+/// Largest move of a held object from one frame to the next, px.
 const LEAP_PX: usize = 3;
 /// Pieces of an object that are smaller than this part of the largest are noise, per cent.
 const PIECES_PERCENT: u32 = 25;
-/// How far apart they are at most, px: what is further away is a spot of the background.
+/// Largest distance between them, px: what is further away is a spot of the background.
 const APART_PX: usize = 32;
-/// How many times the least area of an object is halved for what the hand holds.
+/// Halvings of the least area for what the hand holds.
 const HELD_HALVED: u32 = 3;
-/// One of which less than the first of these is seen, of what was, is seen in part, until more than the second is; per cent.
+/// Hysteresis of "seen in part": below the first share of what was seen, until above the second, per cent.
 const WHOLE_PERCENT: (u32, u32) = (60, 90);
 /// Moving pixels below which an object is still.
 const STILL_PX: u32 = 150;
@@ -49,35 +45,20 @@ const STILL_PX: u32 = 150;
 const GHOST_FRAMES: u32 = 3;
 /// Frames in which what comes in front of the scene counts as moving.
 const ARRIVED_FRAMES: u32 = 4;
-/// How far from moving pixels others belong to what moves, px.
+/// Reach around moving pixels in which others belong to them, px: to learn colours, and to doubt the scene.
 const INSIDE_PX: usize = 10;
-
-/// How far around a moving pixel others may be of the same object, px.
 const MOVES_PX: usize = 4;
-/// How far around an object what differs from the scene may be more of it, px.
+/// Reach around an object in which pixels that differ from the scene may be more of it, px.
 const CLOSE_PX: usize = 16;
 
-/// Numbers that a person may choose.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Config {
-    /// Back projection from which a pixel's colour is the object's, 1 to 255.
-    pub colour_min: u8,
-    /// The least part of the picture that is an object: what is smaller may be somebody behind the skin, or a spot where the
-    /// light has changed.
-    pub area_min: f32,
-    /// The least part of the picture that must move, and differ from the scene, for its colours to be learned.
-    pub learn_min: f32,
-    /// The scene follows what is no object by this power of two of frames.
-    pub scene_rate: u32,
-    /// Whether a hand that brings an object is left out of it.
-    pub skip_hand: bool,
-}
-
-impl Default for Config {
-    fn default() -> Self {
-        Self { colour_min: 45, area_min: 0.04, learn_min: 0.01, scene_rate: 5, skip_hand: true }
-    }
-}
+/// Back projection from which a pixel's colour is the object's, 1 to 255.
+const COLOUR_MIN: u8 = 45;
+/// The least part of the picture that is an object: what is smaller may be a person behind the skin, or a spot in another light.
+const AREA_MIN: f32 = 0.04;
+/// The least part of the picture that must move, and differ from the scene, for its colours to be learned.
+const LEARN_MIN: f32 = 0.01;
+/// The scene follows what is no object by this power of two of frames.
+const SCENE_RATE: u32 = 5;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sighting {
@@ -86,28 +67,22 @@ pub struct Sighting {
     pub angle_rad: f32,
     /// The share of its outline that lies on the long rims. 0: it has none, and the angle is that of the second moments.
     pub rims: f32,
-    /// Part of the picture that it covers.
     pub area: f32,
-    /// Moving pixels on it.
     pub slip_px: u32,
-    /// Whether a part of it is seen: it goes on beyond the picture's border, or most of what was seen of a held one has the wall's
-    /// colours now. Middle and angle are those of the part.
+    /// Part of it is beyond the border or has the colours of the wall; middle and angle are those of the rest.
     pub cut: bool,
 }
 
-/// Follows an object. Nothing is allocated after `new`.
+/// Follows an object.
 #[derive(Clone, Debug)]
 pub struct Tracker {
-    config: Config,
     bins: Bins,
     scene: Scene,
     movement: Running,
     model: ObjectModel,
     object: Mask,
-    /// The object and the hand that brings it.
     near: Mask,
     moving: Mask,
-    /// What differed from the scene a few frames ago.
     apart: Mask,
     slip: Mask,
     bytes: Box<Plane>,
@@ -115,23 +90,19 @@ pub struct Tracker {
     lens: Option<Rectifier>,
     frames: u32,
     seen: bool,
-    /// Where its middle is in the picture.
     middle: Option<Point>,
     /// The most pixels of it that were seen since the hand has closed on it; 0: it has not.
     grasped: u32,
-    /// Whether so much of that is missing that the rest is a part.
     is_part: bool,
-    /// Frames in a row in which the object looked like a ghost.
     ghosts: u32,
 }
 
-impl Tracker {
-    pub fn new(config: Config, movement: Running) -> Self {
+impl Default for Tracker {
+    fn default() -> Self {
         Self {
-            config,
             bins: Bins::new(),
             scene: Scene::new(),
-            movement,
+            movement: Running::new(),
             model: ObjectModel::new(),
             object: Mask::EMPTY,
             near: Mask::EMPTY,
@@ -149,13 +120,13 @@ impl Tracker {
             ghosts: 0,
         }
     }
+}
 
-    /// From here on the object's middle and angle are those behind this lens.
+impl Tracker {
     pub fn rectify(&mut self, lens: Rectifier) {
         self.lens = Some(lens);
     }
 
-    /// The object's pixels in the last frame.
     pub const fn object(&self) -> &Mask {
         &self.object
     }
@@ -165,24 +136,20 @@ impl Tracker {
         self.middle
     }
 
-    /// The object's pixels and those of the hand that brings it.
     pub const fn near(&self) -> &Mask {
         &self.near
     }
 
-    /// The moving pixels of the last frame, the object's and others.
     pub const fn moving(&self) -> &Mask {
         &self.moving
     }
 
-    /// The moving pixels on the object.
     pub const fn slip(&self) -> &Mask {
         &self.slip
     }
 
     /// Takes a frame and its grey plane. With `learn`, the object's colours are learned from what moves: until the hand
     /// closes. What moves in `skin`, where the markers are, is no slip. None while there is no object.
-    #[inline(never)]
     pub fn step(&mut self, frame: &Frame, grey: &Plane, skin: &Mask, learn: bool) -> Option<Sighting> {
         self.frames = self.frames.saturating_add(1);
         self.movement.step(grey, &mut self.bytes);
@@ -210,7 +177,7 @@ impl Tracker {
         differs.erode(5);
         differs.cut_spurs(SPUR_PX);
         if !learn && self.seen {
-            // What is held goes nowhere in a leap: what is new beside it is the background's.
+            // A held object does not leap: new pixels beside it are the background's.
             self.object.dilate(LEAP_PX);
             differs.intersect(&self.object);
         }
@@ -223,21 +190,20 @@ impl Tracker {
         self.object = differs;
         self.near.clone_from(&self.object);
         // A hand that has closed took the object from somebody's.
-        if learn && self.config.skip_hand {
-            let least = (self.config.area_min * PIXELS as f32) as u32;
+        if learn {
+            let least = (AREA_MIN * PIXELS as f32) as u32;
             hand::leave_out(&mut self.object, frame, self.scene.mean_colour(), least);
         }
 
         let part = |pixels: u32| pixels as f32 / PIXELS as f32;
-        // What was an object a moment ago is one still, if half as much of it is seen; what the hand has closed on is one, however
-        // little of it differs from the wall behind it.
+        // A seen object needs half the area to be seen again, a grasped one an eighth: it may be of the wall's colour.
         if learn || !(self.seen || self.grasped > 0) {
             self.grasped = 0;
         } else {
             self.grasped = self.grasped.max(self.object.count());
         }
         let halved = if self.grasped > 0 { HELD_HALVED } else { u32::from(self.seen) };
-        let area_min = self.config.area_min / (1 << halved) as f32;
+        let area_min = AREA_MIN / (1 << halved) as f32;
         let moments = self.object.moments().filter(|moments| part(moments.area) >= area_min);
         (self.seen, self.middle) = (moments.is_some(), moments.map(|moments| moments.middle));
         if !self.seen {
@@ -270,7 +236,6 @@ impl Tracker {
         Some(Sighting { moments, angle_rad: rims.angle, rims: rims.share, area, slip_px, cut })
     }
 
-    /// Takes what is seen now for the scene, and forgets the object.
     fn lay_ghost(&mut self, frame: &Frame) {
         self.near.invert();
         self.near.unpack(&mut self.held);
@@ -280,15 +245,14 @@ impl Tracker {
         (self.ghosts, self.seen, self.middle) = (0, false, None);
     }
 
-    /// Learns the colours of what moves and is not the scene.
     fn learn(&mut self, frame: &Frame, differs: &Mask) {
-        // What has come in front of the scene moves, too, though it be as bright as the scene.
+        // Pixels that newly differ from the scene count as moving, even of equal brightness.
         let mut new = self.apart.clone();
         new.invert();
         new.unite(&self.moving);
         new.intersect(differs);
         new.erode(1);
-        if (new.count() as f32) < self.config.learn_min * PIXELS as f32 {
+        if (new.count() as f32) < LEARN_MIN * PIXELS as f32 {
             return;
         }
         // The inside of a plain object looks the same while it moves.
@@ -301,7 +265,7 @@ impl Tracker {
             let (red, green, blue) = self.scene.colour(at);
             count(&mut hidden[self.bins.of(red, green, blue)]);
         });
-        // Where the background moves it hides colours behind other ones of its own: half of its usual share is taken away too.
+        // A moving background hides colours of its own: half of their usual share is taken away too.
         let mut scene: Histogram = [0; BINS];
         (0..PIXELS).step_by(SAMPLE).for_each(|at| {
             let (red, green, blue) = self.scene.colour(at);
@@ -314,10 +278,8 @@ impl Tracker {
         self.model.learn(&moving, &hidden);
     }
 
-    /// Keeps of a mask the pixels that have the object's colours.
     fn project(&self, frame: &Frame, mask: &mut Mask) {
-        let least = self.config.colour_min;
-        mask.keep(frame, |red, green, blue| self.model.value(self.bins.of(red, green, blue)) >= least);
+        mask.keep(frame, |red, green, blue| self.model.value(self.bins.of(red, green, blue)) >= COLOUR_MIN);
     }
 
     /// Lets the scene follow what is not hidden by the object and a margin around it. What differs may be an object that is
@@ -326,7 +288,7 @@ impl Tracker {
         let mut hidden = self.near.clone();
         let doubt = if self.seen { DOUBT_FRAMES } else { DOUBT_FRAMES_EMPTY };
         if !self.frames.is_multiple_of(doubt) {
-            // What stands still far from an object is the scene, changed.
+            // A change that stands still far from an object belongs to the scene.
             let mut doubtful = self.moving.clone();
             doubtful.dilate(MOVES_PX);
             let mut close = self.near.clone();
@@ -337,12 +299,10 @@ impl Tracker {
         }
         hidden.dilate(3);
         hidden.unpack(&mut self.held);
-        self.scene.follow(frame, &self.held, self.config.scene_rate);
+        self.scene.follow(frame, &self.held, SCENE_RATE);
     }
 }
 
-/// How many pixels of `slip` there are, at most four times as many as on one half of the object: what slips does so at both
-/// ends, and a spot of the moving background beside it at one.
 fn spread_count(slip: &Mask, object: &Moments) -> u32 {
     let (sin, cos) = (libm::sinf(object.angle_rad()), libm::cosf(object.angle_rad()));
     let (mut here, mut there) = (0u32, 0u32);

@@ -2,24 +2,16 @@
 
 use crate::frame::{PIXELS, Plane};
 
-/// Why a camera's word does not count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Blind {
-    /// No picture has come for so long, ms.
     Lost(u32),
-    /// The newest picture was taken so long ago, ms.
     Late(u32),
-    /// The same picture has come for so long, ms: a real one has noise.
     Frozen(u32),
-    /// It is dark, or all of it is alike, or hardly a marker is seen.
     Covered,
 }
 
-/// A picture's age from which it is late, ms: what it shows is older than a slip takes.
 pub const LATE_MS: u32 = 150;
-/// Silence after which a camera is lost, ms.
 pub const LOST_MS: u32 = 200;
-/// How long the same picture may come, ms: cameras repeat one when they miss one.
 pub const FROZEN_MS: u32 = 150;
 /// A picture whose grey levels differ less than this (standard deviation) shows nothing.
 const CONTRAST_MIN: f32 = 5.0;
@@ -28,7 +20,6 @@ const LEVEL_MIN: f32 = 10.0;
 /// The least share of the markers that must be found, per cent.
 const MARKERS_MIN_PERCENT: usize = 34;
 
-/// Watches one camera. Time is the caller's, ms.
 #[derive(Clone, Debug, Default)]
 pub struct Watch {
     last_ms: Option<u32>,
@@ -37,7 +28,6 @@ pub struct Watch {
 }
 
 impl Watch {
-    /// Takes a picture that was taken at `taken_ms` and has come at `now_ms`; `found` of `markers` markers were found in it.
     pub fn picture(
         &mut self,
         grey: &Plane,
@@ -62,14 +52,12 @@ impl Watch {
         }
     }
 
-    /// What is to be thought of the camera while no picture comes.
     pub fn silence(&self, now_ms: u32) -> Option<Blind> {
         let silent = self.last_ms.map_or(now_ms, |last| now_ms.wrapping_sub(last));
         (silent >= LOST_MS).then_some(Blind::Lost(silent))
     }
 }
 
-/// What a picture is like as a whole.
 struct Seen {
     level: f32,
     contrast: f32,
@@ -77,7 +65,6 @@ struct Seen {
 }
 
 impl Seen {
-    /// Every fifth row is enough for level and contrast, and noise makes any of them differ.
     fn of(grey: &Plane) -> Self {
         let (mut sum, mut squares, mut checksum, mut count) = (0u64, 0u64, 0u64, 0u32);
         for row in grey.chunks_exact(crate::frame::WIDTH).step_by(5) {
@@ -103,8 +90,6 @@ impl Seen {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use alloc::boxed::Box;
-    use alloc::vec;
 
     fn picture(seed: u32) -> Box<Plane> {
         let mut grey: Box<Plane> = vec![0; PIXELS].into_boxed_slice().try_into().unwrap();
@@ -128,7 +113,7 @@ mod tests {
     fn late_frozen_covered_and_lost_are_told_apart() {
         let mut watch = Watch::default();
         assert_eq!(watch.picture(&picture(1), (20, 23), 0, 200), Some(Blind::Late(200)));
-        let told: alloc::vec::Vec<_> =
+        let told: Vec<_> =
             (0..9).map(|at| watch.picture(&picture(2), (20, 23), 233 + 33 * at, 233 + 33 * at)).collect();
         assert_eq!(told[..5], [None; 5]);
         assert_eq!(told[6..], [165, 198, 231].map(|same| Some(Blind::Frozen(same))));

@@ -2,9 +2,6 @@
 //!
 //! The lens is equidistant, r = f theta, which one number describes.
 
-use alloc::boxed::Box;
-use alloc::vec::Vec;
-
 use crate::force::MIDDLE;
 use crate::frame::{PIXELS, Point, WIDTH};
 use crate::mask::{Mask, Moments};
@@ -12,16 +9,13 @@ use crate::mask::{Mask, Moments};
 /// Beyond this angle nothing is seen, radians.
 const ANGLE_MAX: f32 = 1.4;
 
-/// A lens, and where each pixel is without it.
 #[derive(Clone, Debug)]
 pub struct Rectifier {
     focal_px: f32,
-    /// Flat place of a pixel about the middle, and how much flat area it covers.
     places: Box<[(f32, f32, f32)]>,
 }
 
 impl Rectifier {
-    /// A lens of this focal length, px.
     pub fn new(focal_px: f32) -> Self {
         let lens = Self { focal_px, places: Box::default() };
         let places: Vec<_> = (0..PIXELS)
@@ -39,7 +33,6 @@ impl Rectifier {
         Self { focal_px, places: places.into_boxed_slice() }
     }
 
-    /// Where a place of the picture is in the flat world, px.
     pub fn flat(&self, seen: Point) -> Point {
         let r = seen.distance(MIDDLE);
         if r < 1e-6 {
@@ -49,14 +42,13 @@ impl Rectifier {
         Point { x: MIDDLE.x + (seen.x - MIDDLE.x) * scale, y: MIDDLE.y + (seen.y - MIDDLE.y) * scale }
     }
 
-    /// Where a pixel of the picture is in the flat world, px.
     #[inline]
     pub fn place(&self, at: usize) -> Point {
         let (x, y, _) = self.places[at];
         Point { x: MIDDLE.x + x, y: MIDDLE.y + y }
     }
 
-    /// How a set of pixels lies in the flat world. None of an empty set.
+    /// Moments in the flat world. None of an empty set.
     pub fn moments(&self, mask: &Mask) -> Option<Moments> {
         let mut sums = [0.0f64; 6];
         mask.for_each(|at| {
@@ -66,18 +58,7 @@ impl Rectifier {
                 *sum += term * area;
             }
         });
-        let [n, sx, sy, sxx, sxy, syy] = sums;
-        if n == 0.0 {
-            return None;
-        }
-        let (x, y) = (sx / n, sy / n);
-        Some(Moments {
-            area: n as u32,
-            middle: Point { x: MIDDLE.x + x as f32, y: MIDDLE.y + y as f32 },
-            xx: (sxx / n - x * x) as f32,
-            xy: (sxy / n - x * y) as f32,
-            yy: (syy / n - y * y) as f32,
-        })
+        Moments::of(sums, MIDDLE)
     }
 }
 

@@ -4,57 +4,41 @@
 //! middle count most.
 
 use crate::frame::Point;
-use crate::markers::{MARKERS_MAX, Marker};
+use crate::markers::Marker;
 use crate::motion::{ARM_PX, Flow};
 
-/// How far from the middle a marker counts a tenth, px.
 const REACH_PX: f32 = 75.0;
 /// Below this sum of weights no marker is near.
 const WEIGHT_MIN: f32 = 0.5;
 
-/// Where the markers were in the picture before.
-#[derive(Clone, Debug)]
+/// Places of the sure markers in the picture before.
+#[derive(Clone, Debug, Default)]
 pub struct Skin {
-    before: [Option<Point>; MARKERS_MAX],
-}
-
-impl Default for Skin {
-    fn default() -> Self {
-        Self::new()
-    }
+    before: Vec<Option<Point>>,
 }
 
 impl Skin {
-    pub const fn new() -> Self {
-        Self { before: [None; MARKERS_MAX] }
-    }
-
-    /// Takes the places of a picture, for the next one.
     pub fn remember(&mut self, markers: &[Marker]) {
-        for (before, marker) in self.before.iter_mut().zip(markers) {
-            *before = is_sure(marker).then_some(marker.at);
-        }
+        self.before = markers.iter().map(|marker| is_sure(marker).then_some(marker.at)).collect();
     }
 
-    /// How the skin at `middle` has moved since. None where no marker near it was found in both pictures.
+    /// Move of the skin at `middle`. None where no marker near it was found in both pictures.
     pub fn flow(&self, markers: &[Marker], middle: Point) -> Option<Flow> {
         let (mut w, mut x, mut y, mut turn, mut arm) = (0.0, 0.0, 0.0, 0.0, 0.0);
-        let mut moves = [(0.0, Point::default(), Point::default()); MARKERS_MAX];
-        let mut count = 0;
+        let mut moves = Vec::new();
         for (marker, before) in markers.iter().zip(&self.before) {
             let Some(before) = before.filter(|_| is_sure(marker)) else { continue };
             let far = marker.at.distance(middle) / REACH_PX;
             let weight = libm::expf(-2.3 * far * far);
             let moved = Point { x: marker.at.x - before.x, y: marker.at.y - before.y };
-            moves[count] = (weight, Point { x: before.x - middle.x, y: before.y - middle.y }, moved);
-            count += 1;
+            moves.push((weight, Point { x: before.x - middle.x, y: before.y - middle.y }, moved));
             (w, x, y) = (w + weight, x + weight * moved.x, y + weight * moved.y);
         }
         if w < WEIGHT_MIN {
             return None;
         }
         (x, y) = (x / w, y / w);
-        for (weight, at, moved) in &moves[..count] {
+        for (weight, at, moved) in &moves {
             turn += weight * (at.x * (moved.y - y) - at.y * (moved.x - x));
             arm += weight * (at.x * at.x + at.y * at.y);
         }

@@ -4,7 +4,6 @@ use crate::common::{Noise, draw_discs, plane};
 use tenax_vision::frame::Plane;
 use tenax_vision::markers::{Calibration, Failure, Markers};
 
-/// A grid of 7 x 5 markers that are moved by what `shift` says of their place.
 fn discs(shift: impl Fn(f32, f32) -> (f32, f32)) -> Vec<(f32, f32, f32)> {
     let places = (0..35).map(|at| (30.3 + 43.1 * (at % 7) as f32, 24.7 + 47.3 * (at / 7) as f32));
     places.map(|(x, y)| (x + shift(x, y).0, y + shift(x, y).1, 4.3)).collect()
@@ -18,12 +17,10 @@ fn even(_: f32, _: f32) -> f32 {
     170.0
 }
 
-/// Stripes 40 pixels wide between two levels, moved by `phase`.
 fn stripes(phase: f32) -> impl Fn(f32, f32) -> f32 {
     move |x, y| 130.0 + 60.0 * ((x + 0.6 * y + phase) * std::f32::consts::TAU / 80.0).sin()
 }
 
-/// The number of the marker that was drawn as `disc`.
 fn number(markers: &Markers, disc: (f32, f32, f32)) -> usize {
     let near =
         markers.iter().position(|marker| (marker.rest.at.x - disc.0).hypot(marker.rest.at.y - disc.1) < 2.0);
@@ -31,7 +28,7 @@ fn number(markers: &Markers, disc: (f32, f32, f32)) -> usize {
 }
 
 fn calibrated(background: impl Fn(f32, f32) -> f32, noise: &mut Noise, grey: &mut Plane) -> Markers {
-    let mut calibration = Calibration::new();
+    let mut calibration = Calibration::default();
     loop {
         draw_discs(&discs(still), &background, 2.0, noise, grey);
         if calibration.frame(grey) {
@@ -147,7 +144,7 @@ fn two_blobs_are_a_failure_and_a_jump_is_no_force() {
 #[test]
 fn what_moves_or_is_not_round_is_no_marker() {
     let (mut noise, mut grey) = (Noise(9), plane(0));
-    let mut calibration = Calibration::new();
+    let mut calibration = Calibration::default();
     loop {
         let mut drawn = discs(still);
         // One that moves, and one that is two discs in one.

@@ -3,9 +3,8 @@
 use crate::common::{Noise, plane};
 use tenax_vision::frame::{Frame, PIXELS, Plane, WIDTH};
 use tenax_vision::mask::Mask;
-use tenax_vision::object::{Config, Running, Sighting, Tracker};
+use tenax_vision::object::{Sighting, Tracker};
 
-/// A slanted rod, 150 x 40 px, about `middle`.
 #[derive(Clone, Copy)]
 struct Rod {
     middle: (f32, f32),
@@ -53,7 +52,7 @@ struct Camera {
 
 impl Camera {
     fn new(seed: u64) -> Self {
-        let tracker = Tracker::new(Config::default(), Running::default());
+        let tracker = Tracker::default();
         let mut camera = Self { world: World::new(seed), tracker, grey: plane(0) };
         (0..20).for_each(|_| assert!(camera.look(None, 0.0, true).is_none()));
         camera
@@ -65,7 +64,6 @@ impl Camera {
         self.tracker.step(&frame, &self.grey, &Mask::EMPTY, learn)
     }
 
-    /// Brings the rod in from the right and holds it still.
     fn bring(&mut self, angle_rad: f32) -> Rod {
         let at = |x: f32| Rod { middle: (x, 120.0), angle_rad };
         for step in 0..40 {

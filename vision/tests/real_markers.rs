@@ -6,7 +6,6 @@ use crate::common::{for_each_frame, plane, recording};
 use tenax_vision::Point;
 use tenax_vision::markers::{Calibration, Markers};
 
-/// Where the author's software has its markers: by frame and marker. Values that it repeats were not found anew.
 fn authors(path: &std::path::Path) -> HashMap<(usize, usize), Point> {
     let text = std::fs::read_to_string(path).expect("readable");
     let mut last = HashMap::new();
@@ -25,7 +24,7 @@ fn authors(path: &std::path::Path) -> HashMap<(usize, usize), Point> {
 fn the_real_video_gives_its_markers() {
     let (video, table) = (recording("skin_video_54fps.m4v"), recording("author_markers.csv"));
     let authors = authors(&table);
-    let (mut grey, mut calibration, mut markers) = (plane(0), Calibration::new(), None::<Markers>);
+    let (mut grey, mut calibration, mut markers) = (plane(0), Calibration::default(), None::<Markers>);
     let mut pairs: Vec<(usize, usize)> = Vec::new();
     let mut last: Vec<Option<Point>> = Vec::new();
     let (mut updates, mut failed, mut worst_jump) = (0, 0, 0.0f32);

@@ -5,12 +5,11 @@ use std::ops::Range;
 
 use crate::common::{for_each_frame, plane, recording};
 use tenax_vision::mask::Mask;
-use tenax_vision::object::{Config, Running, Tracker};
+use tenax_vision::object::Tracker;
 
 /// Frames without card or hand; a person walks about behind the skin in the first and in the last.
 const EMPTY: [Range<usize>; 3] = [0..260, 1540..1640, 2660..2932];
 
-/// Outlines by frame.
 fn outlines() -> BTreeMap<usize, Vec<(f32, f32)>> {
     let rows = include_str!("outlines/cards.csv").lines().filter(|line| !line.starts_with('#'));
     let rows =
@@ -19,12 +18,11 @@ fn outlines() -> BTreeMap<usize, Vec<(f32, f32)>> {
         .collect()
 }
 
-/// Follows the object through the video.
 fn follow() -> (f32, f32, f32) {
     let video = recording("skin_video_54fps.m4v");
     let outlines = outlines();
     assert_eq!(outlines.len(), 20);
-    let (mut grey, mut tracker) = (plane(0), Tracker::new(Config::default(), Running::default()));
+    let (mut grey, mut tracker) = (plane(0), Tracker::default());
     let (mut empty, mut wrong, mut slips, mut held) = (0, 0, 0, 0);
     let mut overlaps = Vec::new();
     for_each_frame(&video, |number, frame| {

@@ -7,9 +7,7 @@ use std::process::{Command, ExitCode};
 
 /// A program of the workspace.
 struct Program {
-    package: &'static str,
-    /// Its file in the target folder.
-    binary: &'static str,
+    manifest: &'static str,
     features: &'static [&'static str],
     commands: &'static [(&'static str, &'static str)],
 }
@@ -17,8 +15,7 @@ struct Program {
 /// By what a person meets first: try it, build a hand, study.
 const PROGRAMS: [Program; 4] = [
     Program {
-        package: "tenax-sim",
-        binary: "tenax-sim",
+        manifest: "sim/Cargo.toml",
         features: &[],
         commands: &[
             ("run", "a scene or a recording on the emulated board; report and figure"),
@@ -27,8 +24,7 @@ const PROGRAMS: [Program; 4] = [
         ],
     },
     Program {
-        package: "tenax-line",
-        binary: "tenax",
+        manifest: "line/Cargo.toml",
         features: &[],
         commands: &[
             ("flash", "the image onto a NUCLEO-F411RE"),
@@ -42,14 +38,12 @@ const PROGRAMS: [Program; 4] = [
         ],
     },
     Program {
-        package: "tenax-ros2",
-        binary: "tenax-ros2",
-        features: &["bridge"],
+        manifest: "ros2/Cargo.toml",
+        features: &["--features", "bridge"],
         commands: &[("bridge", "fingertips into ROS 2")],
     },
     Program {
-        package: "tenax-lab",
-        binary: "tenax-lab",
+        manifest: "lab/Cargo.toml",
         features: &[],
         commands: &[
             ("check", "measure every promise; writes docs/results.md"),
@@ -92,10 +86,8 @@ fn start(command: &str, rest: &[OsString]) -> Result<ExitCode, String> {
         .iter()
         .find(has)
         .ok_or_else(|| format!("there is no command `{command}`; `cargo tenax` lists them"))?;
-    let mut run = cargo("run");
-    run.args(["--quiet", "--release", "--package", program.package, "--bin", program.binary]);
-    run.args(program.features.iter().flat_map(|feature| ["--features", feature]));
-    run.arg("--");
+    let mut run = cargo("run", program.manifest);
+    run.arg("--release").args(program.features).arg("--");
     // The bridge's program is the command.
     if program.commands.len() > 1 {
         run.arg(command);
@@ -105,13 +97,13 @@ fn start(command: &str, rest: &[OsString]) -> Result<ExitCode, String> {
 
 /// Every test, with the image that the emulated board runs.
 fn test(rest: &[OsString]) -> Result<ExitCode, String> {
-    let mut image = cargo("build");
+    let mut image = cargo("build", "Cargo.toml");
     image.args(IMAGE).args(["--target", TARGET]);
     let built = status(&mut image)?;
     if built != ExitCode::SUCCESS {
         return Ok(built);
     }
-    let mut test = cargo("test");
+    let mut test = cargo("test", "Cargo.toml");
     // Tests of the line wait for real time to pass: twice as many at once take half as long.
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     test.env("RUST_TEST_THREADS", (2 * cores).to_string());
@@ -120,11 +112,11 @@ fn test(rest: &[OsString]) -> Result<ExitCode, String> {
     )
 }
 
-/// In the workspace's folder. rigless asks for rustc 1.98 and builds on 1.95.
-fn cargo(verb: &str) -> Command {
+/// In the person's folder, so that their paths hold. rigless asks for rustc 1.98 and builds on 1.95.
+fn cargo(verb: &str, manifest: &str) -> Command {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap_or(Path::new("."));
     let mut cargo = Command::new("cargo");
-    cargo.arg(verb).arg("--ignore-rust-version").arg("--manifest-path").arg(root.join("Cargo.toml"));
+    cargo.arg(verb).arg("--ignore-rust-version").arg("--manifest-path").arg(root.join(manifest));
     cargo
 }
 

@@ -1,4 +1,4 @@
-//! Where the bridge's edges fall between the films' samplings.
+//! Places of the bridge's edges between the films' samplings.
 //!
 //! An edge makes ground and reference jump for some tenths of a microsecond, and a film whose sampling ends then is converted with it. A
 //! scan lasts 2.5 periods of the bridge, so every other one sees the edges 25 us later: modulo 25 us they keep their place. The falling
@@ -25,11 +25,11 @@ const STEPS: u8 = 55;
 const BUCKET: u32 = 20;
 /// From a reading of the bridge's counter to its writing: instructions of a cycle, and the bus.
 const WRITTEN: u32 = 11;
-/// What is wanted before an end of a sampling, and after one.
+/// Least room before an end of a sampling, and after one, ticks.
 const BEFORE: i32 = 75;
 const AFTER: i32 = 10;
 
-/// Of each bucket of duties, modulo [`HALF`]: the place, in steps from [`FIRST`].
+/// Place of the rising edge for each bucket of duties, modulo [`HALF`], in steps from [`FIRST`].
 static PLACES: [u8; (HALF / BUCKET) as usize] = {
     let mut places = [0; (HALF / BUCKET) as usize];
     let mut bucket = 0;
@@ -50,7 +50,7 @@ static PLACES: [u8; (HALF / BUCKET) as usize] = {
     places
 };
 
-/// How much more room than wanted an edge has between the samplings' ends, ticks.
+/// Room of an edge between the samplings' ends beyond the least, ticks.
 const fn room(edge: u32) -> i32 {
     let (mut film, mut room) = (0, i32::MAX);
     while film < PVDF_COUNT as u32 {

@@ -7,12 +7,9 @@ use serde::{Deserialize, Serialize};
 use super::Setting;
 use crate::words::Kept;
 
-/// Settings that a message has room for.
 pub const SETTINGS_MAX: usize = 64;
-/// Bytes of a restored record, at most.
 pub const KEPT_MAX: usize = 320;
 
-/// Why the chip started.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum ResetCause {
     /// Power-up: it was switched on, or the supply came back.
@@ -20,13 +17,10 @@ pub enum ResetCause {
     PowerOn,
     /// Its reset pin: a button or a probe.
     Pin,
-    /// Reset by software.
     Software,
     /// The image panicked or the core faulted.
     Panic,
-    /// Reset by the watchdog.
     Watchdog,
-    /// Another cause.
     Other,
 }
 
@@ -37,29 +31,22 @@ pub struct Identity {
     pub build: u64,
     /// The chip's unique number. 0: no chip.
     pub chip: [u32; 3],
-    /// Why it started.
     pub reset: ResetCause,
 }
 
-/// What identifies the board: build, chip, schema of the messages, settings.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct About {
-    /// Chip and image.
     pub identity: Identity,
     /// The [`SCHEMA`](super::SCHEMA) that its messages follow.
     pub schema: u64,
-    /// Frames since the start.
     pub frames: u32,
-    /// Every setting.
     pub settings: Vec<Setting, SETTINGS_MAX>,
 }
 
 /// A record that was restored at this start, as it lies in flash.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Restored {
-    /// Its kind.
     pub kept: Kept,
-    /// Its bytes.
     pub payload: Vec<u8, KEPT_MAX>,
 }
 

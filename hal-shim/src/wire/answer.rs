@@ -7,21 +7,16 @@ use serde::{Deserialize, Serialize};
 use super::{About, Last, NetworkState, samples};
 use crate::channel::COUNT;
 
-/// Why a command was not carried out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum Refusal {
-    /// The value is outside this range.
     OutOfRange {
-        /// The lowest value that is accepted.
         min: i32,
-        /// The highest value that is accepted.
         max: i32,
     },
     /// A finger that is loaded cannot be zeroed.
     Loaded,
     /// The sensor that it needs gives no number.
     SensorLost,
-    /// Not while the wearer's muscles are active.
     WearerActive,
     /// There is no setting with this number: the board's image is another one.
     UnknownSetting,
@@ -38,20 +33,15 @@ pub enum Refusal {
 /// A setting's number (`tenax_logic::setting::SettingId`) and its value, in its unit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Setting {
-    /// The setting's number.
     pub id: u8,
-    /// Its value, in the unit of its name.
     pub value: i32,
 }
 
-/// Settings in one [`Answer::Settings`] at most.
 pub const SETTINGS_PER_ANSWER: usize = 16;
 
-/// The answer to a command.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 #[allow(clippy::large_enum_variant, reason = "there is no heap to put the large one on")]
 pub enum Answer {
-    /// The command was carried out.
     Done,
     /// The command was not carried out, and nothing has changed.
     Refused(Refusal),

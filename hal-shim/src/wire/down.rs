@@ -11,19 +11,15 @@ use crate::words::Codes;
 /// The longest that one [`Down::Drive`] may hold, ms: a lost link stops the motor after that.
 pub const DRIVE_HOLD_MAX_MS: u16 = 250;
 
-/// A command to the board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum Down {
     /// Answer with [`Answer::Done`](super::Answer::Done).
     Ping,
     /// Drive the motor for `hold_ms`, at most [`DRIVE_HOLD_MAX_MS`]; sent again and again while a key is held.
     Drive {
-        /// The drive.
         drive: MotorDrive,
-        /// For how long, ms.
         hold_ms: u16,
     },
-    /// Change a setting.
     Set(Setting),
     /// Begin a behaviour; one that is under way ends.
     Begin(Behaviour),
@@ -33,14 +29,11 @@ pub enum Down {
     Samples,
     /// Codes of a teacher's picture (v1, v2; Tada 2006, equations 1 and 2). Some 30 times a second.
     Teach {
-        /// Relative motion and direction.
         codes: Codes,
-        /// Age of the picture that they were made from, ms.
         age_ms: u16,
     },
     /// Answer with [`Answer::Network`](super::Answer::Network).
     Network,
-    /// Reset the network's weights to 0.
     Forget,
     /// Save the network's weights now, without waiting for rest.
     Save,
@@ -52,7 +45,6 @@ pub enum Down {
     Hello,
     /// Open a session with the last [`Answer::Nonce`](super::Answer::Nonce). From here on the numbers of frames only rise.
     Open {
-        /// The nonce.
         nonce: u32,
     },
     /// Calibrate the myosensors to the wearer: three prompts of 5 s come up as [`EventKind::Calibration`](super::EventKind::Calibration), then the result.
@@ -69,7 +61,6 @@ pub enum Down {
         /// For how long, s. 0 ends it.
         hold_s: u16,
     },
-    /// End the behaviour that goes on.
     End,
     /// A picture of the camera behind the skin. 30 to 63 times a second.
     View(CameraView),

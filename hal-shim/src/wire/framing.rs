@@ -1,30 +1,27 @@
 //! Frames of the serial line: encoding of messages, and a receiver that skips every bad frame.
 
+use cobs::{DecodeResult, DecoderState};
 use crc::{CRC_32_ISO_HDLC, Crc};
 use postcard::de_flavors::crc::from_bytes_u32;
 use postcard::ser_flavors::{Flavor, crc::CrcModifier};
 use serde::{Serialize, de::DeserializeOwned};
 
-use super::stuffing::{Stuffed, unstuff};
+use super::stuffing::Stuffed;
 use super::{FRAME_MAX, VERSION};
 
 static CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 
-/// A frame's contents.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Received<T> {
-    /// The sender's sequence number.
     pub sequence: u16,
-    /// The message.
     pub message: T,
 }
 
-/// Why a frame was skipped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BadFrame {
     /// Not COBS, or its CRC is wrong, or it is no message.
     Garbled,
-    /// Of another version of this protocol.
+    /// A frame of this other version of the protocol.
     Version(u8),
     /// Longer than [`FRAME_MAX`].
     TooLong,
@@ -37,7 +34,7 @@ pub enum BadFrame {
 /// None if the buffer is too small; [`FRAME_MAX`] bytes are always enough.
 pub fn encode<'a, T: Serialize>(sequence: u16, message: &T, buffer: &'a mut [u8]) -> Option<&'a mut [u8]> {
     let mut serializer =
-        postcard::Serializer { output: CrcModifier::new(Stuffed::new(buffer)?, CRC.digest()) };
+        postcard::Serializer { output: CrcModifier::new(Stuffed::new(buffer), CRC.digest()) };
     (VERSION, sequence, message).serialize(&mut serializer).ok()?;
     serializer.output.finalize().ok()
 }
@@ -45,6 +42,8 @@ pub fn encode<'a, T: Serialize>(sequence: u16, message: &T, buffer: &'a mut [u8]
 /// Decodes bytes as they come into messages. It skips bad frames and reports each to the caller.
 #[derive(Debug)]
 pub struct Receiver {
+    cobs: DecoderState,
+    /// Decoded bytes of the frame so far.
     buffer: [u8; FRAME_MAX],
     length: usize,
     overlong: bool,
@@ -57,9 +56,8 @@ impl Default for Receiver {
 }
 
 impl Receiver {
-    /// A receiver without any bytes.
     pub const fn new() -> Self {
-        Self { buffer: [0; FRAME_MAX], length: 0, overlong: false }
+        Self { cobs: DecoderState::Idle, buffer: [0; FRAME_MAX], length: 0, overlong: false }
     }
 
     /// Takes one byte. Returns the decoded frame, or why it was skipped, when the byte ends a frame; else None.
@@ -67,39 +65,43 @@ impl Receiver {
         self.push_if(byte, || true)
     }
 
-    /// Takes one byte. Returns the decoded frame, or why it was skipped, when the byte ends a frame; else None. If
-    /// `time` says no, the frame is not decoded and is [`BadFrame::Skipped`].
+    /// As [`push`](Self::push), but a frame for which `time` says no is not checked and is [`BadFrame::Skipped`].
     pub fn push_if<T: DeserializeOwned>(
         &mut self,
         byte: u8,
         time: impl FnOnce() -> bool,
     ) -> Option<Result<Received<T>, BadFrame>> {
+        let fed = self.cobs.feed(byte);
         if byte != 0 {
-            match self.buffer.get_mut(self.length) {
-                Some(slot) => {
-                    *slot = byte;
-                    self.length += 1;
+            if let Ok(DecodeResult::DataContinue(byte)) = fed {
+                match self.buffer.get_mut(self.length) {
+                    Some(slot) => {
+                        *slot = byte;
+                        self.length += 1;
+                    }
+                    None => self.overlong = true,
                 }
-                None => self.overlong = true,
             }
             return None;
         }
-        let (length, overlong) = (self.length, self.overlong);
-        self.length = 0;
-        self.overlong = false;
-        if overlong {
+        let length = core::mem::take(&mut self.length);
+        if core::mem::take(&mut self.overlong) {
             return Some(Err(BadFrame::TooLong));
         }
-        // A zero byte on its own is a sender clearing its throat.
-        let frame = self.buffer.get_mut(..length).filter(|frame| !frame.is_empty())?;
-        Some(if time() { decode(frame) } else { Err(BadFrame::Skipped) })
+        if matches!(fed, Ok(DecodeResult::NoData)) {
+            // An empty frame resynchronises the line.
+            return None;
+        }
+        if !time() {
+            return Some(Err(BadFrame::Skipped));
+        }
+        // A block that is cut short is an error.
+        Some(fed.ok().and(self.buffer.get(..length)).map_or(Err(BadFrame::Garbled), decode))
     }
 }
 
-fn decode<T: DeserializeOwned>(bytes: &mut [u8]) -> Result<Received<T>, BadFrame> {
-    let bytes = unstuff(bytes).ok_or(BadFrame::Garbled)?;
-    let parsed = from_bytes_u32::<(u8, u16, T)>(bytes, CRC.digest());
-    match parsed {
+fn decode<T: DeserializeOwned>(bytes: &[u8]) -> Result<Received<T>, BadFrame> {
+    match from_bytes_u32::<(u8, u16, T)>(bytes, CRC.digest()) {
         Ok((VERSION, sequence, message)) => Ok(Received { sequence, message }),
         Ok((version, ..)) => Err(BadFrame::Version(version)),
         // A message of another version need not parse, but its CRC still covers its version byte.

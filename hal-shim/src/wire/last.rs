@@ -6,10 +6,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::words::Fault;
 
-/// Bytes in one piece at most.
 pub const PIECE_MAX: usize = 256;
 
-/// Bytes of the reason, at most.
 pub const WHY_MAX: usize = 48;
 
 /// A piece of the board's last messages before a fault ended its last run.
@@ -28,7 +26,6 @@ pub struct Last {
 }
 
 impl Last {
-    /// An answer without messages.
     pub const fn nothing(from: u16) -> Self {
         Self { after: None, why: Vec::new(), length: 0, from, bytes: Vec::new() }
     }

@@ -16,14 +16,12 @@ use crate::frame::Frame;
 
 /// Frames in a message: a divisor of those in a slow frame.
 pub const FRAMES_PER_RAW: usize = 5;
-/// Bytes of a frame.
 const BYTES: usize = 25;
 const BITS: u32 = 14;
 /// Mask of a sample's 14 bits. The largest sample is 16 380, four times 4095.
 const MASK: u16 = (1 << BITS) - 1;
 const VALID: u32 = 1 << 28;
 
-/// A frame's bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 struct Packed([u8; BYTES]);
 
@@ -46,14 +44,12 @@ pub struct Raw {
 }
 
 impl Raw {
-    /// Puts a frame in its place, which its number says.
     pub fn put(&mut self, frame: &Frame) {
         let place = frame.sequence as usize % FRAMES_PER_RAW;
         self.first = frame.sequence.wrapping_sub(place as u32);
         self.frames[place] = Packed(pack(frame));
     }
 
-    /// The frames.
     pub fn frames(&self) -> [Frame; FRAMES_PER_RAW] {
         core::array::from_fn(|place| unpack(self.first.wrapping_add(place as u32), &self.frames[place].0))
     }
@@ -102,24 +98,14 @@ mod tests {
             state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
             (state >> 16) as u16 & MASK
         };
+        let mut raw = Raw::default();
         for round in 0..1_000 {
-            let mut raw = Raw::default();
-            let frames: [Frame; FRAMES_PER_RAW] = core::array::from_fn(|place| match round {
-                0 => Frame::lost(place as u32),
-                1 => Frame {
-                    pvdf: [MASK; PVDF_COUNT],
-                    switch_a: MASK,
-                    switch_b: MASK,
-                    valid: true,
-                    sequence: place as u32,
-                },
-                _ => Frame {
-                    pvdf: core::array::from_fn(|_| sample()),
-                    switch_a: sample(),
-                    switch_b: sample(),
-                    valid: sample() % 2 == 0,
-                    sequence: round * FRAMES_PER_RAW as u32 + place as u32,
-                },
+            let frames: [Frame; FRAMES_PER_RAW] = core::array::from_fn(|place| Frame {
+                pvdf: core::array::from_fn(|_| if round == 0 { MASK } else { sample() }),
+                switch_a: if round == 0 { MASK } else { sample() },
+                switch_b: if round == 0 { MASK } else { sample() },
+                valid: sample() % 2 == 0,
+                sequence: round * FRAMES_PER_RAW as u32 + place as u32,
             });
             frames.iter().for_each(|frame| raw.put(frame));
             assert_eq!(raw.frames(), frames);

@@ -1,10 +1,8 @@
 //! Samples on the line: of all channels in one message, and a checksum of the ticks' samples.
 
-use core::fmt;
+use core::array;
 
-use serde::de::{Error, SeqAccess, Visitor};
-use serde::ser::SerializeTuple;
-use serde::{Deserializer, Serializer};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::channel::COUNT;
 use crate::frame::Frame;
@@ -18,7 +16,6 @@ pub struct SamplesSum {
 }
 
 impl SamplesSum {
-    /// Takes a frame's samples in.
     pub fn update(&mut self, frame: &Frame) {
         for sample in frame.pvdf {
             self.add(sample);
@@ -39,32 +36,16 @@ impl SamplesSum {
     }
 }
 
-/// Writes every channel: serde knows no arrays of more than 32 elements.
+/// serde knows arrays of up to 32 elements; two halves have the same bytes as a whole.
+const HALF: usize = COUNT / 2;
+const _: () = assert!(COUNT == 2 * HALF);
+
 pub fn serialize<S: Serializer>(samples: &[u16; COUNT], serializer: S) -> Result<S::Ok, S::Error> {
-    let mut tuple = serializer.serialize_tuple(COUNT)?;
-    for sample in samples {
-        tuple.serialize_element(sample)?;
-    }
-    tuple.end()
+    let half = |first: usize| -> [u16; HALF] { array::from_fn(|n| samples[first + n]) };
+    [half(0), half(HALF)].serialize(serializer)
 }
 
-/// Reads every channel.
 pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<[u16; COUNT], D::Error> {
-    struct Samples;
-    impl<'de> Visitor<'de> for Samples {
-        type Value = [u16; COUNT];
-
-        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-            write!(f, "{COUNT} samples")
-        }
-
-        fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Self::Value, A::Error> {
-            let mut samples = [0; COUNT];
-            for (index, sample) in samples.iter_mut().enumerate() {
-                *sample = seq.next_element()?.ok_or_else(|| A::Error::invalid_length(index, &self))?;
-            }
-            Ok(samples)
-        }
-    }
-    deserializer.deserialize_tuple(COUNT, Samples)
+    let halves = <[[u16; HALF]; 2]>::deserialize(deserializer)?;
+    Ok(array::from_fn(|n| halves[n / HALF][n % HALF]))
 }

@@ -22,9 +22,7 @@ pub struct Forces {
     pub fn_mn: i32,
     /// The load, mN: the sum of the quadrants. Ceiling, contact and pulses use it.
     pub load_mn: i32,
-    /// Shear along x, mN.
     pub fx_mn: i32,
-    /// Shear along y, mN.
     pub fy_mn: i32,
     /// Shear force Ft, mN, not negative.
     pub ft_mn: i32,
@@ -35,7 +33,6 @@ pub struct Forces {
 impl Forces {
     /// The margin of the grip, mN: S2 x Fn - Ft, the shear that the finger could still carry. None
     /// while there is no ratio.
-    #[must_use]
     pub fn margin_mn(&self, s2_permille: u16) -> Option<i32> {
         self.ratio_permille?;
         // A force is below 2^17 mN.
@@ -44,7 +41,6 @@ impl Forces {
     }
 }
 
-/// Detectors that a slow frame has room for.
 pub const DETECTORS_MAX: usize = 8;
 
 /// Decisions and forces of a slow frame (12.5 ms).
@@ -54,15 +50,12 @@ pub struct Slow {
     pub frame: u32,
     /// Its 25 ticks, the oldest first.
     pub ticks: [TickRecord; FRAMES_PER_SLOW_FRAME as usize],
-    /// The mode after its last tick.
     pub mode: GripMode,
     /// Forces, None while the force sensor gives no number.
     pub forces: Option<Forces>,
-    /// The S2 in force, per mille.
     pub s2_permille: u16,
-    /// The flexor's envelope above rest, mV. None while the sensor gives no number.
+    /// Envelopes above rest, mV. None while the sensor gives no number.
     pub flexor_mv: Option<i16>,
-    /// The extensor's envelope above rest, mV. None while the sensor gives no number.
     pub extensor_mv: Option<i16>,
     /// Whether a myosensor is active, its hold time included.
     pub wearer_active: bool,
@@ -73,9 +66,7 @@ pub struct Slow {
     /// Checksum ([`SamplesSum`](super::SamplesSum)) of every valid sample of the slow frame's ticks, to compare the
     /// input of board and replay.
     pub samples_sum: u32,
-    /// The commands that the serial line may give.
     pub line: Line,
-    /// The behaviour that is under way.
     pub behaviour: Option<Behaviour>,
 }
 
@@ -88,10 +79,8 @@ pub struct NetworkState {
     pub weights: [[i32; RECEPTORS]; NETWORK_OUTPUTS],
     /// Activations, 2^14 is 1: films 0 to 1, strain gauges -1 to 1.
     pub activations: [i16; RECEPTORS],
-    /// Number of weight updates since the weights were 0.
     pub updates: u32,
     /// Age of the teacher's newest picture, ms; None before the first.
     pub teacher_age_ms: Option<u16>,
-    /// Why it is not learning, if it is not.
     pub no_lesson: Option<NoLesson>,
 }

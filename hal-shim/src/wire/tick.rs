@@ -1,4 +1,4 @@
-//! What one tick decided, and its four to nine bytes on the line.
+//! The decisions of one tick, and their four to nine bytes on the line.
 //!
 //! Twenty-five of these go up 80 times a second, more than everything else together, and each byte costs the core twenty
 //! instructions (checksum and framing). So the fields have their places, and those that are usually 0 are left out:
@@ -23,7 +23,7 @@ use crate::detector::DetectorSet;
 use crate::motor::{Duty, MotorDrive};
 use crate::words::DriveSource;
 
-/// What one tick (0.5 ms) decided.
+/// Decisions of one tick (0.5 ms).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TickRecord {
     /// The largest vibration envelope of all films, in samples (14 bits): at most [`TickRecord::VIBRATION_MAX`].
@@ -36,9 +36,7 @@ pub struct TickRecord {
     pub believed: DetectorSet,
     /// The detectors in `believed` for which the reflex closes the hand.
     pub acted: DetectorSet,
-    /// Drive of the motor.
     pub drive: MotorDrive,
-    /// Source of the drive.
     pub source: DriveSource,
 }
 
@@ -66,7 +64,6 @@ impl TickRecord {
         [self.said.bits(), self.believed.bits(), self.acted.bits()]
     }
 
-    /// The record of these fields; None for values that no tick has.
     fn of(vibration: u16, outputs: [i8; NETWORK_OUTPUTS], driven: u16, sets: [u8; 3]) -> Option<Self> {
         let permille = driven & ((1 << DRIVE_SHIFT) - 1);
         let duty = Duty::per_mille(permille);
@@ -155,31 +152,23 @@ impl<'de> Deserialize<'de> for TickRecord {
 mod tests {
     use super::*;
     use crate::detector::DetectorId;
+    use crate::words::DriveSource::{Behaviour, Link, Nobody, Reflex, Wearer};
 
     #[test]
     fn every_field_survives_its_bytes_at_its_ends() {
-        let drives = [0, 1, 999, 1_000]
-            .map(Duty::per_mille)
-            .map(|duty| [MotorDrive::Close(duty), MotorDrive::Open(duty)]);
-        let drives = drives.into_iter().flatten().chain([MotorDrive::Coast]);
-        let sources = [
-            DriveSource::Nobody,
-            DriveSource::Wearer,
-            DriveSource::Link,
-            DriveSource::Reflex,
-            DriveSource::Behaviour,
+        let [s1, mlp] = [DetectorId::S1, DetectorId::Mlp].map(DetectorSet::only);
+        let loudest = TickRecord::VIBRATION_MAX;
+        let ends = [
+            (0, [0, 0], [DetectorSet::NONE; 3]),
+            (1, [-128, 127], [DetectorSet::ALL; 3]),
+            (8_191, [127, -128], [s1.or(mlp), mlp, DetectorSet::NONE]),
+            (loudest, [-1, 1], [DetectorSet::ALL, s1, s1]),
         ];
-        for (drive, source) in drives.flat_map(|drive| sources.map(|source| (drive, source))) {
-            let [s1, mlp] = [DetectorId::S1, DetectorId::Mlp].map(DetectorSet::only);
-            for (vibration, [said, believed, acted]) in
-                [0, 1, 8_191, TickRecord::VIBRATION_MAX].into_iter().zip([
-                    [DetectorSet::NONE; 3],
-                    [DetectorSet::ALL; 3],
-                    [s1.or(mlp), mlp, DetectorSet::NONE],
-                    [DetectorSet::ALL, s1, s1],
-                ])
-            {
-                for outputs in [[0, 0], [-128, 127], [127, -128], [-1, 1]] {
+        let duties = [0, 1, 999, 1_000].map(Duty::per_mille);
+        let driven = duties.into_iter().flat_map(|duty| [MotorDrive::Close(duty), MotorDrive::Open(duty)]);
+        for drive in driven.chain([MotorDrive::Coast]) {
+            for source in [Nobody, Wearer, Link, Reflex, Behaviour] {
+                for (vibration, outputs, [said, believed, acted]) in ends {
                     let record = TickRecord { vibration, outputs, said, believed, acted, drive, source };
                     let mut buffer = [0; BYTES_MAX];
                     let bytes = postcard::to_slice(&record, &mut buffer).expect("it fits");

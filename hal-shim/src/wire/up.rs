@@ -11,13 +11,10 @@ use crate::words::{Calibration, Cause, Consent, Fault, GripMode, Kept, MotorStop
 /// Counters of the board since it was switched on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Counters {
-    /// Frames taken.
     pub frames: u32,
-    /// Frames lost.
     pub frames_lost: u32,
     /// Number of overruns of the converter or its DMA. Each restarted them.
     pub overruns: u32,
-    /// Control ticks run.
     pub ticks: u32,
     /// Ticks that ended after the next frame had begun.
     pub ticks_late: u32,
@@ -34,25 +31,18 @@ pub struct Counters {
     pub control_permille: u16,
 }
 
-/// What happened at the board (a fault, a change of mode, a consent) and when.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Event {
     /// Sequence number of the frame in which it happened.
     pub frame: u32,
-    /// What happened.
     pub kind: EventKind,
 }
 
-/// Kinds of events.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum EventKind {
-    /// The mode changed.
     Mode {
-        /// The mode before.
         from: GripMode,
-        /// The mode after.
         to: GripMode,
-        /// The cause.
         cause: Cause,
     },
     /// A fault began, or a sensor or ability is back.
@@ -61,14 +51,12 @@ pub enum EventKind {
     Stroke {
         /// The peak of Ft/Fn before it slid, per mille.
         mu_s_permille: u16,
-        /// The new S2, per mille.
         s2_permille: u16,
     },
     /// More events happened in one tick than are kept; this many were lost.
     EventsLost(u16),
     /// Consent was given at the hand: the line's commands are carried out for a while.
     Armed(Consent),
-    /// The consent is over.
     Disarmed,
     /// From here on the line's commands are carried out without consent (true), or with it only (false). Told at the start
     /// if it is so, and when the setting changes.
@@ -97,33 +85,26 @@ pub enum EventKind {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 #[allow(clippy::large_enum_variant, reason = "there is no heap to put the large one on")]
 pub enum Up {
-    /// The board has started.
     Hello {
         /// Samples a second on every direct pin.
         frame_hz: u16,
-        /// Why it started, if not because it was switched on.
+        /// The fault that ended the run before. None: it was switched on.
         after: Option<Fault>,
     },
-    /// A slow frame.
     Slow(Slow),
-    /// An event.
     Event(Event),
     /// The counters, ten times a second.
     Counters(Counters),
-    /// A command was carried out, or was not.
     Answer {
-        /// Sequence number of the command's frame.
         of: u16,
         /// Sequence number of the last frame that was taken before the command.
         frame: u32,
-        /// The answer.
         answer: Answer,
     },
     /// A record was saved and outlives a power cut.
     Saved {
         /// Sequence number of the last frame before it was saved.
         frame: u32,
-        /// The kind of record.
         kept: Kept,
     },
     /// The board's identity and settings; sent once at the start, after `Hello`.
@@ -133,15 +114,13 @@ pub enum Up {
     Restored(Restored),
     /// Frames as they were sampled: see [`Down::Stream`](super::Down::Stream).
     Raw(Raw),
-    /// What every sensor reads: see [`Down::Stream`](super::Down::Stream).
+    /// Readings of every sensor: see [`Down::Stream`](super::Down::Stream).
     Senses(Senses),
     /// A command, before its answer, while frames are streamed.
     Taken {
         /// Sequence number of the first frame whose tick knows the command.
         before: u32,
-        /// Sequence number of the command's frame.
         of: u16,
-        /// The command.
         command: Down,
     },
 }

@@ -1,6 +1,4 @@
-//! Walks the types of the messages: what they are called, and a message of each kind.
-
-use tenax_hal_shim::wire::{SCHEMA, VERSION};
+//! Types of the messages by name, and a message of each kind.
 
 use postcard_schema::schema::{
     DataModelType as Ty, DataModelVariant as Variant, NamedType, NamedValue, NamedVariant,
@@ -10,51 +8,22 @@ use postcard_schema::schema::{
 #[derive(Default)]
 pub struct Types(Vec<&'static NamedType>);
 
-/// What a type is called where a field has it.
-fn reference(of: &NamedType) -> Reference {
+/// A field's type as JSON.
+fn reference(of: &NamedType) -> String {
     match of.ty {
-        _ if matches!(of.name, "tick" | "frame") => Reference::Name(of.name.to_owned()),
-        Ty::Option(inner) => Reference::Option(Box::new(reference(inner))),
-        Ty::Seq(inner) => Reference::List(Box::new(reference(inner))),
+        _ if is_packed(of) => format!("\"{}\"", of.name),
+        Ty::Option(inner) => format!("[\"opt\", {}]", reference(inner)),
+        Ty::Seq(inner) => format!("[\"vec\", {}]", reference(inner)),
         Ty::Tuple(all) if all.iter().all(|one| one == &all[0]) => {
-            Reference::Array(all.len(), Box::new(reference(all[0])))
+            format!("[\"arr\", {}, {}]", all.len(), reference(all[0]))
         }
-        Ty::Tuple(all) => Reference::Tuple(all.iter().map(|one| reference(one)).collect()),
+        Ty::Tuple(all) => {
+            let all: Vec<String> = all.iter().map(|one| reference(one)).collect();
+            format!("[\"tuple\", [{}]]", all.join(", "))
+        }
         Ty::NewtypeStruct(inner) => reference(inner),
-        Ty::Struct(_) | Ty::Enum(_) => Reference::Name(of.name.to_owned()),
-        plain => Reference::Name(format!("{plain:?}").to_lowercase()),
-    }
-}
-
-enum Reference {
-    Name(String),
-    Option(Box<Self>),
-    List(Box<Self>),
-    Array(usize, Box<Self>),
-    Tuple(Vec<Self>),
-}
-
-impl Reference {
-    fn json(&self) -> String {
-        match self {
-            Self::Name(name) => format!("\"{name}\""),
-            Self::Option(inner) => format!("[\"opt\", {}]", inner.json()),
-            Self::List(inner) => format!("[\"vec\", {}]", inner.json()),
-            Self::Array(count, inner) => format!("[\"arr\", {count}, {}]", inner.json()),
-            Self::Tuple(all) => {
-                format!("[\"tuple\", [{}]]", all.iter().map(Self::json).collect::<Vec<_>>().join(", "))
-            }
-        }
-    }
-
-    fn words(&self) -> String {
-        match self {
-            Self::Name(name) => name.clone(),
-            Self::Option(inner) => format!("option {}", inner.words()),
-            Self::List(inner) => format!("list {}", inner.words()),
-            Self::Array(count, inner) => format!("[{count}] {}", inner.words()),
-            Self::Tuple(all) => format!("({})", all.iter().map(Self::words).collect::<Vec<_>>().join(", ")),
-        }
+        Ty::Struct(_) | Ty::Enum(_) => format!("\"{}\"", of.name),
+        plain => format!("\"{plain:?}\"").to_lowercase(),
     }
 }
 
@@ -77,27 +46,47 @@ fn field_name(name: Option<&str>, of: &NamedType) -> String {
     if matches!(snake.as_str(), "from" | "kind") { snake + "_" } else { snake }
 }
 
-fn fields(values: &[&NamedValue]) -> Vec<(String, Reference)> {
-    values.iter().map(|value| (field_name(Some(value.name), value.ty), reference(value.ty))).collect()
+fn field(name: Option<&str>, of: &NamedType) -> String {
+    format!("[\"{}\", {}]", field_name(name, of), reference(of))
+}
+
+fn fields(values: &[&NamedValue]) -> String {
+    let all: Vec<String> = values.iter().map(|value| field(Some(value.name), value.ty)).collect();
+    format!("[{}]", all.join(", "))
 }
 
 /// A variant's fields. Those of a message that is a type of its own are that type's.
-fn fields_of(variant: &NamedVariant) -> Vec<(String, Reference)> {
+fn fields_of(variant: &NamedVariant) -> String {
     match variant.ty {
-        Variant::UnitVariant => Vec::new(),
-        Variant::NewtypeVariant(inner) => match inner.ty {
-            Ty::Struct(values) => fields(values),
-            _ => vec![(field_name(None, inner), reference(inner))],
-        },
-        Variant::TupleVariant(all) => all.iter().map(|of| (field_name(None, of), reference(of))).collect(),
+        Variant::UnitVariant => "[]".to_owned(),
+        Variant::NewtypeVariant(NamedType { ty: Ty::Struct(values), .. }) => fields(values),
+        Variant::NewtypeVariant(inner) => format!("[{}]", field(None, inner)),
+        Variant::TupleVariant(all) => {
+            let all: Vec<String> = all.iter().map(|of| field(None, of)).collect();
+            format!("[{}]", all.join(", "))
+        }
         Variant::StructVariant(values) => fields(values),
     }
+}
+
+fn types_of(variant: &NamedVariant) -> Vec<&'static NamedType> {
+    match variant.ty {
+        Variant::UnitVariant => Vec::new(),
+        Variant::NewtypeVariant(inner) => vec![inner],
+        Variant::TupleVariant(all) => all.to_vec(),
+        Variant::StructVariant(values) => values.iter().map(|value| value.ty).collect(),
+    }
+}
+
+/// Types with places of their own for their fields.
+fn is_packed(of: &NamedType) -> bool {
+    matches!(of.name, "tick" | "frame")
 }
 
 impl Types {
     /// Adds a type, after those that it is made of.
     pub fn add(&mut self, of: &'static NamedType) {
-        if matches!(of.name, "tick" | "frame") || self.0.iter().any(|known| known.name == of.name) {
+        if is_packed(of) || self.0.iter().any(|known| known.name == of.name) {
             return;
         }
         match of.ty {
@@ -108,14 +97,7 @@ impl Types {
                 self.0.push(of);
             }
             Ty::Enum(variants) => {
-                for variant in *variants {
-                    match variant.ty {
-                        Variant::UnitVariant => {}
-                        Variant::NewtypeVariant(inner) => self.add(inner),
-                        Variant::TupleVariant(all) => all.iter().for_each(|one| self.add(one)),
-                        Variant::StructVariant(values) => values.iter().for_each(|value| self.add(value.ty)),
-                    }
-                }
+                variants.iter().flat_map(|variant| types_of(variant)).for_each(|inner| self.add(inner));
                 self.0.push(of);
             }
             _ => {}
@@ -124,41 +106,16 @@ impl Types {
 
     /// A line a type.
     pub fn json(&self) -> Vec<String> {
-        let list = |fields: Vec<(String, Reference)>| {
-            let all: Vec<_> =
-                fields.iter().map(|(name, of)| format!("[\"{name}\", {}]", of.json())).collect();
-            format!("[{}]", all.join(", "))
-        };
         let line = |of: &&NamedType| match of.ty {
-            Ty::Struct(values) => format!("\"{}\": {{\"struct\": {}}}", of.name, list(fields(values))),
+            Ty::Struct(values) => format!("\"{}\": {{\"struct\": {}}}", of.name, fields(values)),
             Ty::Enum(variants) => {
-                let all: Vec<_> =
-                    variants.iter().map(|v| format!("[\"{}\", {}]", v.name, list(fields_of(v)))).collect();
+                let all: Vec<String> =
+                    variants.iter().map(|v| format!("[\"{}\", {}]", v.name, fields_of(v))).collect();
                 format!("\"{}\": {{\"enum\": [{}]}}", of.name, all.join(", "))
             }
             _ => String::new(),
         };
         self.0.iter().map(line).collect()
-    }
-
-    /// The messages each way as tables. The types in them stand in the JSON.
-    pub fn markdown(&self) -> String {
-        let mut page = format!("Version {VERSION}, schema `{SCHEMA:016x}`.\n\n");
-        let list = |fields: Vec<(String, Reference)>| {
-            let all: Vec<_> = fields.iter().map(|(name, of)| format!("`{name}: {}`", of.words())).collect();
-            all.join(", ")
-        };
-        for (name, title) in [("Up", "From the board"), ("Answer", "Answers"), ("Down", "To the board")] {
-            let Some(Ty::Enum(variants)) = self.0.iter().find(|of| of.name == name).map(|of| of.ty) else {
-                continue;
-            };
-            page += &format!("### {title}\n\n| number | `{name}` | fields |\n|---|---|---|\n");
-            for (number, variant) in variants.iter().enumerate() {
-                page += &format!("| {number} | `{}` | {} |\n", variant.name, list(fields_of(variant)));
-            }
-            page += "\n";
-        }
-        page + "The types in these tables stand in [`wire.json`](../python/tenax/wire.json): fields of a `struct`, variants of an `enum` from 0 on.\n\n"
     }
 }
 
@@ -186,13 +143,7 @@ fn varint(mut value: u64) -> Vec<u8> {
 }
 
 fn of_variant(number: usize, variant: &NamedVariant, count: &mut u64) -> Vec<Vec<u8>> {
-    let types: Vec<&NamedType> = match variant.ty {
-        Variant::UnitVariant => Vec::new(),
-        Variant::NewtypeVariant(inner) => vec![inner],
-        Variant::TupleVariant(all) => all.to_vec(),
-        Variant::StructVariant(values) => values.iter().map(|value| value.ty).collect(),
-    };
-    each(varint(number as u64), &types, count)
+    each(varint(number as u64), &types_of(variant), count)
 }
 
 /// All parts as they are first, and each other that one of them may be.

@@ -1,17 +1,9 @@
-//! What the detector says, and when it says nothing.
+//! Verdicts of the array detector, with and without readings.
 
 use proptest::prelude::*;
-use tenax_logic::array::{
-    ArrayDetector, ArrayVerdict, Judgement, Model, PreprocessorConfig, Reading, specimen,
-};
+use tenax_logic::array::{ArrayDetector, ArrayVerdict, Judgement, Model, Reading, shipped};
 
 use super::readings;
-
-/// A model whose verdict needs as many frames as these.
-fn model(on_frames: u8, off_frames: u8) -> Model<32, 1, 16> {
-    let judgement = Judgement { on_frames, off_frames, ..specimen::MODEL.judgement };
-    Model { judgement, ..specimen::MODEL.clone() }
-}
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
@@ -22,8 +14,8 @@ proptest! {
         on_frames in 1..6u8,
         off_frames in 1..6u8,
     ) {
-        let model = model(on_frames, off_frames);
-        let judgement = model.judgement;
+        let judgement = Judgement { on_frames, off_frames, ..shipped::MODEL.judgement };
+        let model = Model { judgement, ..shipped::MODEL.clone() };
         let mut detector = ArrayDetector::new(&model);
         let mut before = ArrayVerdict::NONE;
         let (mut sure, mut unsure) = (0, 0);
@@ -48,7 +40,7 @@ proptest! {
 // Shows R5.
 #[test]
 fn without_readings_it_stands_down_and_says_for_how_long() {
-    let mut detector = ArrayDetector::new(&specimen::MODEL);
+    let mut detector = ArrayDetector::new(&shipped::MODEL);
     assert_eq!(detector.verdict(), ArrayVerdict::NONE);
     let load = |n: u16| -> Reading { std::array::from_fn(|e| Some(2_000 + n % 7 * (e as u16 + 1))) };
     for n in 0..39 {
@@ -66,16 +58,4 @@ fn without_readings_it_stands_down_and_says_for_how_long() {
     }
     assert_eq!(detector.verdict(), ArrayVerdict::NONE);
     assert_eq!(detector.push(&load(1)).age_ms, 0);
-}
-
-#[test]
-fn a_model_may_have_other_windows() {
-    let Model { preprocessor, network, judgement } = specimen::MODEL.clone();
-    let slow: Model<32, 1, 16, 40, 20> =
-        Model { preprocessor: PreprocessorConfig { lag: 20, ..preprocessor }, network, judgement };
-    let mut detector = ArrayDetector::new(&slow);
-    let ready =
-        (0..100u16).map(|n| detector.push(&[Some(2_000 + n); 10]).age_ms == 0).position(|ready| ready);
-    // 40 differences over 20 frames take 60 readings.
-    assert_eq!(ready, Some(59));
 }

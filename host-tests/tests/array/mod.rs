@@ -1,4 +1,4 @@
-//! The array detector (Bamshad 2023) against the equations in wider numbers, and what holds for any input.
+//! The array detector (Bamshad 2023) against its equations in wider numbers, for any input.
 
 mod detector;
 mod features;

@@ -1,8 +1,8 @@
-//! What the network becomes, over alpha, beta and delta, beside what the fixed point says.
+//! Fate of the network over alpha, beta and delta, beside that of its fixed point.
 
 use std::fmt::Write;
 
-use tenax_logic::hebbian::{Code, Config, FingertipNetwork, RECEPTORS, Rule, Weight};
+use tenax_logic::hebbian::{Code, Codes, Config, FingertipNetwork, RECEPTORS, Rule, Weight};
 
 use super::oracle::{Rates, exact, fixed_point, weights_of};
 use super::task::{Finger, Moment};
@@ -12,100 +12,87 @@ const ALPHAS_PPB: [u32; 9] =
 const BETAS_PPB: [u32; 7] = [1_000, 5_000, 10_000, 20_000, 50_000, 500_000, 5_000_000];
 const DELTAS_PPM: [u32; 3] = [10_000, 300_000, 3_000_000];
 
-/// o1 below this, on average over [`WINDOW_MS`], says 'slip'.
-pub const SLIP_BELOW: f64 = -0.2;
+/// Mean of o1 over [`WINDOW_MS`] below which slip is reported.
+const SLIP_BELOW: f64 = -0.2;
 /// The seed of a trial that no lesson has.
 pub const UNSEEN: u64 = 1_000;
-/// The shortest time that is judged.
+/// Shortest time that is judged, ms.
 const WINDOW_MS: usize = 50;
 
-/// What a network has become, in the order in which it is asked.
+/// Fate of a network, in the order of the questions; each with its letter in the map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
 pub enum Fate {
-    /// One connection has more than half of all the weight of an output: if it is lost, all is.
-    Runaway,
-    /// o1 hears nothing: within 0.1 on average during slip.
-    Dead,
-    /// o1 is at its end for more than nine tenths of the slip: how much it slips is not told any more.
-    Saturated,
-    /// It says things that are not so: slip in more than 1 % of holding, or the wrong direction in more than 1 % of slip.
-    Wrong,
-    /// Slip is said in less than 95 % of its time.
-    Weak,
+    /// One connection has more than half of the weight of an output.
+    Runaway = b'1',
+    /// o1 stays within 0.1 on average during slip.
+    Dead = b'.',
+    /// o1 is at its limit for more than 0.9 of the slip.
+    Saturated = b'S',
+    /// Slip is reported in more than 1 % of holding, or the wrong direction in more than 1 % of slip.
+    Wrong = b'x',
+    /// Slip is reported in less than 95 % of its time.
+    Weak = b'w',
     /// None of these.
-    Useful,
+    Useful = b'U',
 }
 
 impl Fate {
     fn letter(self) -> char {
-        match self {
-            Self::Runaway => '1',
-            Self::Dead => '.',
-            Self::Saturated => 'S',
-            Self::Wrong => 'x',
-            Self::Weak => 'w',
-            Self::Useful => 'U',
-        }
+        char::from(self as u8)
     }
 }
 
-/// What the touch-only outputs say in a trial that was not learned from.
-#[derive(Clone, Copy, Debug, Default)]
+/// Scores of the touch-only outputs in a trial that was not learned from, as parts of its time.
+#[derive(Clone, Copy, Debug)]
 pub struct Said {
     /// Mean of |o1| while it slips.
     pub o1_slip: f64,
-    /// Part of the slip in which o1 is at -1.
+    /// o1 at -1 during slip.
     pub at_end: f64,
-    /// Part of the slip that is called so.
+    /// Slip reported during slip.
     pub slip_seen: f64,
-    /// Part of the holding that is called slip.
+    /// Slip reported during holding.
     pub false_slip: f64,
-    /// Part of lifting and lowering slip in which o2's sign is right.
+    /// Right sign of o2 during slip.
     pub direction: f64,
 }
 
-/// Asks weights about a trial, whose phases are whole windows.
+fn mean(values: impl Iterator<Item = f64>) -> f64 {
+    let (sum, count) = values.fold((0.0, 0.0), |(sum, count), value| (sum + value, count + 1.0));
+    sum / count
+}
+
+/// Scores of weights in a trial, whose phases are whole windows.
 pub fn ask(weights: &[[f64; RECEPTORS]; 2], trial: &[Moment]) -> Said {
-    let (mut said, mut slipping, mut holding) = (Said::default(), 0.0, 0.0);
-    for window in trial.chunks_exact(WINDOW_MS) {
+    let part = |is: bool| f64::from(u8::from(is));
+    let judged = trial.chunks_exact(WINDOW_MS).map(|window| {
         let outputs = window.iter().map(|moment| {
             let t = exact(&moment.felt);
             weights.map(|row| row.iter().zip(t).map(|(w, t)| w * t).sum::<f64>().clamp(-1.0, 1.0))
         });
-        let (mut o1, mut o2, mut at_end) = (0.0, 0.0, 0.0);
-        for [relative, direction] in outputs {
-            o1 += relative / WINDOW_MS as f64;
-            o2 += direction / WINDOW_MS as f64;
-            at_end += f64::from(u8::from(relative <= -1.0)) / WINDOW_MS as f64;
-        }
-        let slip = f64::from(u8::from(o1 < SLIP_BELOW));
-        let [relative, direction] = window[0].truth;
-        if relative == Code::Minus {
-            slipping += 1.0;
-            said.o1_slip += o1.abs();
-            said.at_end += at_end;
-            said.slip_seen += slip;
-            said.direction += f64::from(u8::from(o2 * f64::from(direction.sign()) > 0.0));
-        } else {
-            holding += 1.0;
-            said.false_slip += slip;
-        }
+        let outputs: Vec<_> = outputs.collect();
+        let [o1, o2] = [0, 1].map(|n: usize| mean(outputs.iter().map(|outputs| outputs[n])));
+        (window[0].truth, o1, o2, mean(outputs.iter().map(|outputs| part(outputs[0] <= -1.0))))
+    });
+    let (slips, holds): (Vec<_>, Vec<_>) = judged.partition(|(truth, ..)| truth[0] == Code::Minus);
+    let right = |(truth, _, o2, _): &(Codes, f64, f64, f64)| o2 * f64::from(truth[1].sign()) > 0.0;
+    Said {
+        o1_slip: mean(slips.iter().map(|(_, o1, ..)| o1.abs())),
+        at_end: mean(slips.iter().map(|(.., at_end)| *at_end)),
+        slip_seen: mean(slips.iter().map(|(_, o1, ..)| part(*o1 < SLIP_BELOW))),
+        false_slip: mean(holds.iter().map(|(_, o1, ..)| part(*o1 < SLIP_BELOW))),
+        direction: mean(slips.iter().map(|slip| part(right(slip)))),
     }
-    said.o1_slip /= slipping;
-    said.at_end /= slipping;
-    said.slip_seen /= slipping;
-    said.direction /= slipping;
-    said.false_slip /= holding;
-    said
 }
 
-/// The largest part that one connection has in an output's weights.
+/// Largest part of one connection in an output's weights.
 pub fn largest_part(row: &[f64; RECEPTORS]) -> f64 {
     let sum: f64 = row.iter().map(|w| w.abs()).sum();
     row.iter().fold(0.0f64, |largest, w| largest.max(w.abs())) / sum.max(f64::MIN_POSITIVE)
 }
 
-/// What these weights have become, judged on a trial.
+/// Fate of these weights in a trial.
 pub fn fate(weights: &[[f64; RECEPTORS]; 2], trial: &[Moment]) -> Fate {
     let said = ask(weights, trial);
     if weights.iter().any(|row| largest_part(row) > 0.5) {
@@ -132,28 +119,18 @@ pub fn teach(network: &mut FingertipNetwork, config: &Config, moments: &[Moment]
     }
 }
 
-/// The network after these moments.
 pub fn learned(config: &Config, moments: &[Moment]) -> FingertipNetwork {
     let mut network = FingertipNetwork::default();
     teach(&mut network, config, moments);
     network
 }
 
-/// The means of `t_j v_i` over what is taught.
+/// The means of `t_j v_i` over the lessons.
 pub fn correlations(moments: &[Moment]) -> [[f64; RECEPTORS]; 2] {
-    let mut sums = [[0.0; RECEPTORS]; 2];
-    let mut taught = 0.0;
-    for moment in moments {
-        if let Some(codes) = moment.lesson() {
-            taught += 1.0;
-            for (row, code) in sums.iter_mut().zip(codes) {
-                for (sum, t) in row.iter_mut().zip(exact(&moment.felt)) {
-                    *sum += t * f64::from(code.sign());
-                }
-            }
-        }
-    }
-    sums.map(|row| row.map(|sum| sum / taught))
+    let taught: Vec<_> = moments.iter().filter_map(|m| Some((exact(&m.felt), m.lesson()?))).collect();
+    [0, 1].map(|i: usize| {
+        std::array::from_fn(|j| mean(taught.iter().map(|(t, codes)| t[j] * f64::from(codes[i].sign()))))
+    })
 }
 
 fn map() -> String {
@@ -183,7 +160,7 @@ fn map() -> String {
     map.trim_end().lines().map(str::trim_end).collect::<Vec<_>>().join("\n")
 }
 
-/// The part of the map in the documentation, that of the default delta, is the one that is measured.
+/// The documentation has the part of the map at the default delta.
 #[test]
 fn the_documentation_has_this_map() {
     let map = map();
@@ -194,29 +171,6 @@ fn the_documentation_has_this_map() {
         documentation.contains(defaults),
         "docs/hebbian.md has another map: put the one printed above there"
     );
-}
-
-/// The defaults are useful with a margin: half and twice of each of them are too.
-#[test]
-fn the_defaults_are_inside_the_useful_region() {
-    let finger = Finger::new(1);
-    let (lesson, trial) = (finger.lesson(), finger.trial(UNSEEN));
-    let d = Config::default();
-    for alpha_ppb in [d.alpha_ppb / 2, d.alpha_ppb, d.alpha_ppb * 2] {
-        for beta_ppb in [d.beta_ppb / 2, d.beta_ppb, d.beta_ppb * 2] {
-            for delta_ppm in [d.delta_ppm / 2, d.delta_ppm, d.delta_ppm * 2] {
-                let changed = usize::from(alpha_ppb != d.alpha_ppb)
-                    + usize::from(beta_ppb != d.beta_ppb)
-                    + usize::from(delta_ppm != d.delta_ppm);
-                if changed < 2 {
-                    let config = Config { alpha_ppb, beta_ppb, delta_ppm };
-                    let weights = weights_of(&learned(&config, &lesson));
-                    println!("{config:?}: {:.2?}", ask(&weights, &trial));
-                    assert_eq!(fate(&weights, &trial), Fate::Useful, "{config:?}");
-                }
-            }
-        }
-    }
 }
 
 /// The defaults, four times slower: the order of the phases in a trial matters less, as the theory has it.
@@ -249,23 +203,17 @@ fn is_close((found, theory): &([f64; RECEPTORS], [f64; RECEPTORS])) {
     assert!(error < 0.05 * largest, "{found:.3?} for {theory:.3?}");
 }
 
-/// From nothing, the weights come to where the derivation says.
+/// From nothing; and from the fixed point where delta is small: there two rivals take 1 / (beta (1 - c2 / c1)) updates to decide, longer
+/// than the lessons.
 #[test]
-fn it_settles_at_the_fixed_point() {
-    for delta_ppm in [300_000, 3_000_000] {
-        let config = slow(delta_ppm);
-        settled(&config, FingertipNetwork::default()).iter().for_each(is_close);
-    }
-}
-
-/// With a small delta two rivals take 1 / (beta (1 - c2 / c1)) updates to decide, longer than this. But once there, the
-/// weights stay.
-#[test]
-fn it_stays_at_the_fixed_point() {
+fn weights_settle_and_stay_at_the_fixed_point() {
     let c = correlations(&Finger::new(1).lesson());
     for delta_ppm in DELTAS_PPM {
         let config = slow(delta_ppm);
         let weights = c.map(|c| fixed_point(&Rates::from(&config), &c).map(Weight::from_f64));
         settled(&config, FingertipNetwork::from_weights(&weights)).iter().for_each(is_close);
+        if delta_ppm >= Config::default().delta_ppm {
+            settled(&config, FingertipNetwork::default()).iter().for_each(is_close);
+        }
     }
 }

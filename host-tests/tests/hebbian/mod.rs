@@ -1,6 +1,4 @@
-//! The Hebbian network (Tada 2006) against `f64`, against its own theory, and where it fails.
-//!
-//! `cargo test -p tenax-host-tests --test fingertip hebbian -- --nocapture` prints every figure of `docs/hebbian.md`.
+//! The Hebbian network (Tada 2006) against `f64`, its theory and its boundaries.
 
 mod failures;
 mod long_runs;

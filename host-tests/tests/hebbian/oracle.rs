@@ -9,19 +9,15 @@ pub fn exact<const N: usize>(activations: &Activations<N>) -> [f64; N] {
     activations.as_bits().map(|t| f64::from(t) / f64::from(1 << 26))
 }
 
-/// A network's weights, exactly.
 pub fn weights_of<const I: usize, const O: usize>(network: &Network<I, O>) -> [[f64; I]; O] {
     network.weights().map(|row| row.map(|weight| weight.as_f64()))
 }
 
-/// alpha, beta, delta.
 #[derive(Clone, Copy, Debug)]
 pub struct Rates {
     pub alpha: f64,
     pub beta: f64,
     pub delta: f64,
-    /// Without r, equation 5 is the plain Hebbian rule with forgetting.
-    pub with_r: bool,
 }
 
 impl From<&Config> for Rates {
@@ -30,12 +26,10 @@ impl From<&Config> for Rates {
             alpha: f64::from(config.alpha_ppb) * 1e-9,
             beta: f64::from(config.beta_ppb) * 1e-9,
             delta: f64::from(config.delta_ppm) * 1e-6,
-            with_r: true,
         }
     }
 }
 
-/// The network.
 #[derive(Clone, Debug)]
 pub struct Reference<const I: usize, const O: usize> {
     pub weights: [[f64; I]; O],
@@ -62,14 +56,14 @@ impl<const I: usize, const O: usize> Reference<I, O> {
             let v = f64::from(code.sign());
             let sum: f64 = row.iter().map(|w| w.abs()).sum();
             for (w, t) in row.iter_mut().zip(t) {
-                let r = if rates.with_r { (w.abs() + rates.delta) / (sum + rates.delta) } else { 1.0 };
+                let r = (w.abs() + rates.delta) / (sum + rates.delta);
                 *w = (*w + rates.alpha * r * t * v - rates.beta * *w).clamp(-FULL_SCALE, FULL_SCALE);
             }
         }
     }
 }
 
-/// Where equations 5 and 6 settle on average, for `c[j]` the mean of `t_j v`.
+/// Mean weights at which equations 5 and 6 settle, for `c[j]` the mean of `t_j v`.
 ///
 /// With `k = alpha / (beta (S + delta))`, each weight solves `|w| = k |c| (|w| + delta)`, so
 /// `w = k c delta / (1 - k |c|)`; and k is the one number below `1 / max |c|` with `k (S(k) + delta) = alpha / beta`. The
@@ -79,9 +73,6 @@ pub fn fixed_point<const I: usize>(rates: &Rates, c: &[f64; I]) -> [f64; I] {
     let largest = c.iter().fold(0.0f64, |largest, c| largest.max(c.abs()));
     if largest == 0.0 {
         return [0.0; I];
-    }
-    if !rates.with_r {
-        return c.map(|c| ratio * c);
     }
     let at = |k: f64| c.map(|c| k * c * rates.delta / (1.0 - k * c.abs()));
     let (mut low, mut high) = (0.0, 1.0 / largest);

@@ -1,9 +1,9 @@
-//! The task that the map and the failures are measured on: Tada's pick-up (figures 5 and 6), made of statistics, not of
-//! physics. It is stated here completely, so that its theory can be worked out; the scenes have the physics.
+//! The task of the map and the failures: Tada's pick-up (figures 5 and 6) as statistics without physics, stated completely so that
+//! its theory can be worked out.
 //!
-//! One trial, in ms, and what is true in it (v1, v2; P the grasping force, S the shear on the finger, of their maxima):
+//! One trial: its phases in ms, the true codes v1 and v2, the grasping force P and the shear S relative to their maxima:
 //!
-//! | from | what | v1 | v2 | P | S |
+//! | from | phase | v1 | v2 | P | S |
 //! |---|---|---|---|---|---|
 //! | 0 | the hand lifts, the fingers slip: they press too little to carry it | -1 | 1 | 0.4 | 0.35 |
 //! | 1500 | the object is lifted | 1 | 1 | 0.8 | 0.6 |
@@ -21,6 +21,7 @@
 
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
+use tenax_host_tests::gauss;
 use tenax_logic::hebbian::{Activation, Activations, Code, Codes, RECEPTORS};
 
 /// Vibration receptors come first.
@@ -33,7 +34,7 @@ const TRIAL_MS: usize = 7_000;
 const SEEN_AFTER_MS: usize = 66;
 const PICTURE_MS: usize = 33;
 
-/// One finger: what its receptors feel.
+/// Receptors of one finger.
 #[derive(Clone, Debug)]
 pub struct Finger {
     noise: [f64; VIBRATION],
@@ -43,16 +44,14 @@ pub struct Finger {
 /// A millisecond of a trial.
 #[derive(Clone, Copy, Debug)]
 pub struct Moment {
-    /// What the receptors say.
     pub felt: Activations<RECEPTORS>,
-    /// What is true.
     pub truth: Codes,
-    /// What the camera says.
+    /// Codes of the camera.
     pub seen: Codes,
 }
 
 impl Moment {
-    /// What there is to learn, by the teacher's rule: nothing while nothing moves.
+    /// Codes to learn; none while nothing moves.
     pub fn lesson(&self) -> Option<Codes> {
         (self.seen != [Code::Zero; 2]).then_some(self.seen)
     }
@@ -67,11 +66,6 @@ fn phase(ms: usize) -> (Codes, f64, f64) {
         4_000..5_500 => ([Plus, Minus], 0.8, 0.6),
         _ => ([Minus, Minus], 0.8, -0.7),
     }
-}
-
-fn gauss(rng: &mut ChaCha8Rng) -> f64 {
-    // Twelve uniform numbers: mean 0, variance 1.
-    (0..12).map(|_| rng.random_range(-0.5..0.5)).sum()
 }
 
 impl Finger {

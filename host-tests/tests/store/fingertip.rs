@@ -1,4 +1,4 @@
-//! What a fingertip keeps is what it has after a power cut.
+//! Records of a fingertip across a power cut.
 
 use tenax_hal_shim::channel::{FSR, FSR_COUNT};
 use tenax_hal_shim::front_end::FSR_REST_MV;
@@ -13,7 +13,7 @@ use tenax_logic::store::{Erase, open};
 
 use super::flash::TestFlash;
 
-/// Everything that `fingertip` wants saved goes into `flash`.
+/// Saves everything that the fingertip asks for; the kinds of the records.
 fn save_all(fingertip: &mut Fingertip, keeper: &mut Keeper, flash: &mut TestFlash) -> Vec<Kept> {
     let (mut log, _) = open(flash, Erase::Allowed);
     let save = |record: Record| {
@@ -25,7 +25,7 @@ fn save_all(fingertip: &mut Fingertip, keeper: &mut Keeper, flash: &mut TestFlas
     std::iter::from_fn(|| fingertip.next_record(keeper)).map(save).collect()
 }
 
-/// A new fingertip with what `flash` holds.
+/// A new fingertip with the records of the flash.
 fn booted(flash: &mut TestFlash) -> Fingertip {
     let (_, found) = open(flash, Erase::Allowed);
     let mut fingertip = Fingertip::trusting();
@@ -40,11 +40,8 @@ fn booted(flash: &mut TestFlash) -> Fingertip {
 
 /// A finger whose force sensor is 30 mV off, which reads as a load.
 fn off_zero(fingertip: Fingertip) -> Bench {
-    let mut bench = Bench::new(3);
-    bench.fingertip = fingertip;
-    for quadrant in 0..FSR_COUNT {
-        bench.pins_mv[FSR + quadrant] = f64::from(FSR_REST_MV + 30);
-    }
+    let mut bench = Bench::of(fingertip, 3);
+    bench.pins_mv[FSR..FSR + FSR_COUNT].fill(f64::from(FSR_REST_MV + 30));
     bench.run(1_000);
     bench
 }
@@ -62,14 +59,17 @@ fn zero_and_settings_survive_and_a_fingertip_without_them_differs() {
     assert!(save_all(&mut bench.fingertip, &mut keeper, &mut flash).is_empty(), "nothing has changed yet");
     let untouched = fn_mn(&bench);
     assert!(untouched > 100, "{untouched} mN");
-    bench.fingertip.command(&Down::Zero).unwrap();
-    bench.fingertip.command(&set(SettingId::S2, 420)).unwrap();
+    bench.accepts(Down::Zero);
+    bench.accepts(set(SettingId::S2, 420));
     assert_eq!(save_all(&mut bench.fingertip, &mut keeper, &mut flash), [Kept::Settings, Kept::Zero]);
+    bench.accepts(Down::Forget);
+    assert_eq!(save_all(&mut bench.fingertip, &mut keeper, &mut flash), [Kept::Network]);
 
     let after = off_zero(booted(&mut flash));
     assert!(fn_mn(&after) < untouched / 4, "{} mN after, {untouched} mN before", fn_mn(&after));
     assert_eq!(after.slows.last().map(|slow| slow.s2_permille), Some(420));
     let mut same = booted(&mut flash);
+    assert_eq!(same.network().weights, [[0; 24]; 2]);
     let mut keeper = same.keeper();
     assert!(same.next_record(&mut keeper).is_none(), "what was restored need not be saved");
 }
@@ -80,22 +80,9 @@ fn a_record_of_something_else_is_told_and_changes_nothing() {
     let mut keeper = fingertip.keeper();
     for kept in Kept::ALL {
         fingertip.restore(kept, &[0xFF; 12]);
-    }
-    for kept in Kept::ALL {
         let event = fingertip.next_event().expect("an event for each");
         assert_eq!(event.kind, EventKind::Fault(Fault::RecordDamaged(kept)));
     }
     assert!(fingertip.next_record(&mut keeper).is_none());
-    let bench = off_zero(fingertip);
-    assert_eq!(bench.slows.last().map(|slow| slow.s2_permille), Some(300));
-}
-
-#[test]
-fn what_is_forgotten_stays_forgotten() {
-    let mut flash = TestFlash::blank(4_096);
-    let mut fingertip = Fingertip::trusting();
-    let mut keeper = fingertip.keeper();
-    fingertip.command(&Down::Forget).unwrap();
-    assert_eq!(save_all(&mut fingertip, &mut keeper, &mut flash), [Kept::Network]);
-    assert_eq!(booted(&mut flash).network().weights, [[0; 24]; 2]);
+    assert_eq!(fingertip.config().get(SettingId::S2), 300);
 }

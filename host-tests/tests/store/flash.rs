@@ -2,22 +2,21 @@
 
 use tenax_hal_shim::flash::{BLANK, FlashArea, FlashFailed, Sector};
 
-/// What an operation has done when the power goes.
+/// State of an operation when the power goes.
 #[derive(Clone, Copy, Debug)]
 pub enum Harm {
     Nothing,
-    /// Everything; the core never hears of it.
+    /// Complete, but not reported.
     Everything,
     /// A word's bits in this mask were not programmed yet; the words of an erased sector still have their zeros in it.
     Bits(u32),
     /// A word as above; every word of an erased sector reads something else.
     Noise(u32),
-    /// The bits of this mask are hardly programmed, if they were to be: they read as programmed at one time and not at another. Of
-    /// the others, all are (true) or none is.
+    /// The bits of this mask that were to be programmed hardly are: they read as programmed at times. The other bits all are (true) or
+    /// none is.
     Marginal(u32, bool),
 }
 
-/// Every harm that a test with a cut tries.
 pub const HARMS: [Harm; 6] = [
     Harm::Nothing,
     Harm::Everything,
@@ -27,17 +26,16 @@ pub const HARMS: [Harm; 6] = [
     Harm::Noise(0x9E37_79B9),
 ];
 
-/// Two sectors.
 #[derive(Clone, Debug)]
 pub struct TestFlash {
-    words: [Vec<u32>; 2],
-    /// Bits of a word that read as programmed or not, as [`weak_reads_programmed`](Self::weak_reads_programmed) says.
+    pub words: [Vec<u32>; 2],
+    /// Bits of a word that are hardly programmed.
     weak: Vec<(Sector, usize, u32)>,
-    /// How bits that are hardly programmed read now.
+    /// Hardly programmed bits read as programmed.
     pub weak_reads_programmed: bool,
-    /// Operations until the power goes, and what the last one does.
+    /// Operations until the power goes, and the harm to the last one.
     pub cut: Option<(usize, Harm)>,
-    /// Whether the power is gone.
+    /// The power is gone.
     pub dead: bool,
     /// Erases fail.
     pub worn: bool,
@@ -47,12 +45,10 @@ pub struct TestFlash {
 }
 
 impl TestFlash {
-    /// Out of the factory.
     pub fn blank(sector_words: usize) -> Self {
         Self::holding([vec![BLANK; sector_words], vec![BLANK; sector_words]])
     }
 
-    /// Whatever it holds.
     pub fn holding(words: [Vec<u32>; 2]) -> Self {
         Self {
             words,
@@ -66,18 +62,13 @@ impl TestFlash {
         }
     }
 
-    /// Its words, to do harm to.
-    pub fn words(&mut self) -> &mut [Vec<u32>; 2] {
-        &mut self.words
-    }
-
     /// The power comes back.
     pub fn power_up(&mut self) {
         self.cut = None;
         self.dead = false;
     }
 
-    /// Begins an operation: what the power cut does to it, if there is one now.
+    /// Begins an operation; the harm to it, if the power goes now.
     fn begin(&mut self) -> Result<Option<Harm>, FlashFailed> {
         assert!(!self.dead, "nothing runs without power");
         self.operations += 1;
@@ -110,7 +101,7 @@ impl FlashArea for TestFlash {
         let harm = self.begin()?;
         assert_eq!(self.read(sector, word), BLANK, "{sector:?} {word} is programmed twice");
         let cell = self.words[sector as usize].get_mut(word).expect("a word of the sector");
-        // A weak bit that is programmed at last is weak no more.
+        // A weak bit that is programmed is weak no more.
         for (_, _, mask) in self.weak.iter_mut().filter(|weak| (weak.0, weak.1) == (sector, word)) {
             *mask &= value;
         }

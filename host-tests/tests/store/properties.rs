@@ -1,11 +1,11 @@
-//! What holds for any history and any damage.
+//! The log under any history and any damage.
 
 use proptest::prelude::*;
 use tenax_hal_shim::words::Kept;
 use tenax_logic::store::{Erase, open};
 
 use super::flash::{HARMS, TestFlash};
-use super::{numbers, save};
+use super::{booted, numbers, save};
 
 const SECTOR_WORDS: usize = 96;
 
@@ -14,20 +14,17 @@ fn kepts() -> impl Strategy<Value = Kept> {
 }
 
 proptest! {
-    /// Cut after cut, each followed by a boot: nothing finished is ever lost, nothing is found that was never saved.
     #[test]
-    fn many_cuts_in_a_row(lives in prop::collection::vec((0usize..60, 0..HARMS.len(), kepts()), 1..40)) {
+    fn cut_after_cut_nothing_finished_is_lost_and_nothing_unsaved_is_found(lives in prop::collection::vec((0usize..60, 0..HARMS.len(), kepts()), 1..40)) {
         let mut flash = TestFlash::blank(SECTOR_WORDS);
         let mut known = [None; 4];
         let mut n = 0;
         for (operations, harm, first) in lives {
             flash.power_up();
-            let mut look = flash.clone();
-            let (_, found) = open(&mut look, Erase::Allowed);
-            let now = numbers(&look, &found);
+            let now = booted(&mut flash.clone());
             for kept in Kept::ALL {
                 let index = kept as usize;
-                // What was found once may only be replaced by what was being saved since.
+                // Only a save that began since may replace it.
                 prop_assert!(now[index] >= known[index], "{:?}: {:?} after {:?}", kept, now[index], known[index]);
             }
             known = now;
@@ -43,9 +40,8 @@ proptest! {
         }
     }
 
-    /// Any bits may rot: what is found was saved once, and the log goes on.
     #[test]
-    fn any_damage(
+    fn after_any_damage_only_saved_records_are_found_and_the_log_goes_on(
         saves in 1u32..30,
         rot in prop::collection::vec((0usize..2, 0usize..SECTOR_WORDS, any::<u32>()), 1..8),
     ) {
@@ -55,7 +51,7 @@ proptest! {
             save(&mut flash, &mut log, Kept::ALL[n as usize % 4], n).unwrap();
         }
         for (sector, word, bits) in rot {
-            flash.words()[sector][word] ^= bits;
+            flash.words[sector][word] ^= bits;
         }
         let (mut log, found) = open(&mut flash, Erase::Allowed);
         for n in numbers(&flash, &found).into_iter().flatten() {
@@ -63,26 +59,22 @@ proptest! {
         }
         if log.free_words() >= 9 {
             save(&mut flash, &mut log, Kept::Network, 99).unwrap();
-            let (_, found) = open(&mut flash, Erase::Allowed);
-            prop_assert_eq!(numbers(&flash, &found)[0], Some(99));
+            prop_assert_eq!(booted(&mut flash)[0], Some(99));
         }
     }
 
-    /// A flash that held something else before.
     #[test]
     fn nonsense_is_no_record(words in prop::array::uniform2(prop::collection::vec(any::<u32>(), SECTOR_WORDS))) {
         let mut flash = TestFlash::holding(words);
         let (mut log, found) = open(&mut flash, Erase::Allowed);
         prop_assert_eq!(numbers(&flash, &found), [None; 4]);
         save(&mut flash, &mut log, Kept::Settings, 5).unwrap();
-        let (_, found) = open(&mut flash, Erase::Allowed);
-        prop_assert_eq!(numbers(&flash, &found), [None, None, Some(5), None]);
+        prop_assert_eq!(booted(&mut flash), [None, None, Some(5), None]);
     }
 
-    /// One rotten record of a kept costs that record: the one before it is used, and the other kepts stay.
     // Shows B5.
     #[test]
-    fn a_rotten_record_leaves_the_one_before(bit in 0usize..32, word in 0usize..6) {
+    fn a_rotten_record_leaves_the_one_before_and_the_other_kinds(bit in 0usize..32, word in 0usize..6) {
         let mut flash = TestFlash::blank(SECTOR_WORDS);
         let (mut log, _) = open(&mut flash, Erase::Allowed);
         for (n, kept) in Kept::ALL.into_iter().enumerate() {
@@ -90,7 +82,7 @@ proptest! {
         }
         let begins = SECTOR_WORDS / 8 * 7 - log.free_words();
         save(&mut flash, &mut log, Kept::Zero, 7).unwrap();
-        flash.words()[0][begins + word] ^= 1 << bit;
+        flash.words[0][begins + word] ^= 1 << bit;
         let (_, found) = open(&mut flash, Erase::Allowed);
         // A tag of which a bit rotted still says what it is.
         let zero = if word == 0 { 7 } else { 1 };

@@ -1,6 +1,6 @@
 //! A fingertip on the host that goes from one world to the next and keeps what it has learned.
 
-use anyhow::{Context, anyhow};
+use anyhow::Context;
 use tenax_hal_shim::channel::{FRAMES_PER_SLOW_FRAME, PVDF_COUNT, SLOW_HZ};
 use tenax_hal_shim::detector::{DetectorId, DetectorSet};
 use tenax_hal_shim::motor::MotorDrive;
@@ -118,7 +118,7 @@ impl Bench {
     pub fn controlled(&self, control: Control) -> anyhow::Result<Self> {
         let kept = self.snapshot()?;
         let (normaliser, network, more) =
-            snapshot::restore(&hebbian::NORMALISER, &kept).map_err(|damaged| anyhow!("{damaged:?}"))?;
+            snapshot::restore(&hebbian::NORMALISER, &kept).context("a damaged snapshot")?;
         let mut weights = network.weights();
         let films = &mut weights[0][..PVDF_COUNT];
         let more = control.change(films, more);

@@ -1,7 +1,7 @@
 //! The network in the firmware's integers.
 
 use anyhow::anyhow;
-use tenax_logic::array::{FEATURES, Layer, Mlp};
+use tenax_logic::array::{FEATURES, Features, Layer, Mlp};
 use tenax_sim::array::network::{fixed, square};
 
 use crate::train::features::Sequence;
@@ -72,15 +72,18 @@ impl Quantised {
     /// Logits of a sequence in units of the float network's. Fails if a sum of the firmware's network could overflow.
     pub fn logits(&self, sequence: &Sequence) -> anyhow::Result<Vec<f64>> {
         let too_large = |_| anyhow!("a sum of the network could overflow");
-        let network: Mlp<FEATURES, H1, 1, H2> = Mlp::new(
-            Layer::new(square(&self.first)?, fixed(&self.first_bias)?, self.first_shift)
+        let network = Mlp {
+            first: Layer::new(square(&self.first)?, fixed(&self.first_bias)?, self.first_shift)
                 .map_err(too_large)?,
-            [Layer::new(square(&self.second)?, fixed(&self.second_bias)?, self.second_shift)
-                .map_err(too_large)?],
-            Layer::new([fixed(&self.last)?], [self.last_bias], 0).map_err(too_large)?,
-        )
-        .map_err(too_large)?;
-        let logit = |features| f64::from(network.judge(&[network.see(features)])) / self.per_logit;
+            second: Layer::new(square(&self.second)?, fixed(&self.second_bias)?, self.second_shift)
+                .map_err(too_large)?,
+            last: Layer::new([fixed(&self.last)?], [self.last_bias], 0).map_err(too_large)?,
+        };
+        let logit = |features: &Features| {
+            let mut seen = [0; H1];
+            network.first.activate(features, 0..H1, &mut seen);
+            f64::from(network.judge(&seen)) / self.per_logit
+        };
         Ok(sequence.features.iter().map(logit).collect())
     }
 }

@@ -128,7 +128,7 @@ impl Skin {
         while again.len() < tenax_vision::markers::CALIBRATION_FRAMES as usize {
             again.extend(rest.iter().cloned());
         }
-        let (mut calibration, mut grey) = (Calibration::new(), plane());
+        let (mut calibration, mut grey) = (Calibration::default(), plane());
         for_each_picture(again, |_, frame| {
             frame.grey(&mut grey);
             calibration.frame(&grey);

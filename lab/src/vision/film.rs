@@ -9,7 +9,6 @@ use std::time::{Duration, Instant};
 use anyhow::{Context, Result};
 use serde::Serialize;
 use tenax_vision::frame::Frame;
-use tenax_vision::object::Config;
 use tenax_vision::quality::Blind;
 use tenax_vision::rectify::Rectifier;
 use tenax_vision::{Camera, Summary};
@@ -79,7 +78,7 @@ impl Plan {
 /// Follows all of a source's pictures; `told` hears of each. Fails if pictures cannot be read, or results not written.
 pub fn follow(plan: &Plan, mut feed: Feed, mut told: impl FnMut(Told<'_>) -> Result<()>) -> Result<Report> {
     let mut tables = plan.folder.as_deref().map(Tables::create).transpose()?;
-    let mut camera = Camera::new(Config::default());
+    let mut camera = Camera::default();
     if let Some(focal_px) = plan.source.focal_px() {
         camera.rectify(Rectifier::new(focal_px));
     }

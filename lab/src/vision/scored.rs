@@ -7,7 +7,6 @@ use serde::Serialize;
 use tenax_scene::picture::story::State;
 use tenax_scene::picture::{Options, Session, Stress, Truth};
 use tenax_vision::frame::{FRAME_BYTES, Frame};
-use tenax_vision::object::Config;
 use tenax_vision::rectify::Rectifier;
 use tenax_vision::{Camera, Summary};
 
@@ -163,7 +162,7 @@ fn follow(
     (frames, worked): (&mut usize, &mut Duration),
 ) -> Result<()> {
     let mut session = Session::under(Options { seed, rate_hz: RATE_HZ, fisheye: true }, stress);
-    let mut camera = Camera::new(Config::default());
+    let mut camera = Camera::default();
     camera.rectify(Rectifier::new(session.lens().focal_px as f32));
     let mut planes = vec![0; FRAME_BYTES];
     let mut pairs: Option<Vec<(usize, usize)>> = None;

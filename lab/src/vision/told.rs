@@ -72,12 +72,11 @@ mod tests {
     use super::*;
     use tenax_scene::picture::{Options, Session};
     use tenax_vision::frame::{FRAME_BYTES, Frame};
-    use tenax_vision::object::Config;
 
     #[test]
     fn a_drawn_slip_reaches_the_board_and_a_late_picture_does_not() {
         let mut session = Session::new(Options { seed: 2, rate_hz: 30.0, fisheye: true });
-        let mut camera = Camera::new(Config::default());
+        let mut camera = Camera::default();
         let mut planes = vec![0; FRAME_BYTES];
         let (mut slid, mut moved, mut forces, mut taught) = (0, 0, 0, 0);
         while let Some(truth) = session.picture(&mut planes) {

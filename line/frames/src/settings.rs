@@ -20,7 +20,7 @@ This page lists the numbers that a user can change.
 <!-- Printed from logic/src/*/settings.rs by cargo tenax settings; do not edit. -->
 
 Press the blue button briefly ([consent](safety.md#the-cable)), then run `cargo tenax config set NAME=VALUE`. The value outlives a power cut. A scene uses
-`kind = \"set-NAME\"` with `value`. A trusted line has wider ranges. Within the untrusted ranges, no two settings together open the hand or switch slip detection off.
+`kind = \"set-NAME\"` with `value`. No setting opens the hand or closes it above the force ceiling; some can switch slip detection off.
 The number names the setting on the wire and in flash.
 
 | number | name with unit | range | default | meaning |
@@ -35,14 +35,10 @@ pub fn markdown() -> String {
         // Writing into a String cannot fail.
         let _ = writeln!(
             page,
-            "| {number} | `{}` | {} to {}{} | {} | {} |",
+            "| {number} | `{}` | {} to {} | {} | {} |",
             row.name,
             range.start(),
             range.end(),
-            match row.range_in_force(true) {
-                trusted if trusted == range => String::new(),
-                trusted => format!(" (trusted: {} to {})", trusted.start(), trusted.end()),
-            },
             row.default,
             row.meaning
         );
@@ -56,11 +52,6 @@ pub fn named(name: &str) -> anyhow::Result<SettingId> {
         let names = SettingId::ALL.map(|id| id.row().name).join(", ");
         format!("no setting is called {name}; the settings are {names}")
     })
-}
-
-/// Whether the line is trusted where these are in force: it decides how far some of them may go.
-pub fn trusts_line(settings: &[Setting]) -> bool {
-    settings.contains(&Setting { id: SettingId::LineTrusted.number(), value: 1 })
 }
 
 /// The trace of a screen or page that shows what a setting moves.
@@ -133,11 +124,10 @@ pub fn by_number(settings: &[Setting]) -> BTreeMap<u8, i32> {
 /// Settings as a TOML file, with what each does.
 pub fn toml(settings: &[Setting]) -> String {
     let mut text = String::from("# `tenax config import` sets what is named here.\n");
-    let trusted = trusts_line(settings);
     for setting in settings {
         if let Some(id) = SettingId::from_number(setting.id) {
             let row = id.row();
-            let (min, max) = row.range_in_force(trusted).into_inner();
+            let (min, max) = row.range().into_inner();
             // Writing into a String cannot fail.
             let _ = writeln!(
                 text,
@@ -149,7 +139,7 @@ pub fn toml(settings: &[Setting]) -> String {
     text
 }
 
-/// The settings that a TOML file names. Whether the line is trusted comes last: a narrower range is in force after it.
+/// The settings that a TOML file names. Whether the line is trusted comes last: without trust, what follows would need consent.
 /// An error says what is wrong with it.
 pub fn of_toml(text: &str) -> anyhow::Result<Vec<Setting>> {
     let table: toml::Table = text.parse().context("this is no TOML")?;
@@ -203,10 +193,10 @@ mod tests {
     }
 
     #[test]
-    fn a_setting_is_read_by_either_name_and_a_wrong_one_says_what_is_right() {
+    fn a_setting_is_read_and_a_wrong_one_says_what_is_right() {
         let set = Setting { id: SettingId::EmgOn.number(), value: 200 };
         assert_eq!(parse("emg-on-mv=200").unwrap(), set);
-        assert_eq!(parse("myo-on-mv = 200").unwrap(), set);
+        assert_eq!(parse("emg-on-mv = 200").unwrap(), set);
         for (text, word) in [("emg-on-mv", "NAME=VALUE"), ("emg=1", "emg-on-mv"), ("emg-on-mv=x", "whole")] {
             let wrong = format!("{:#}", parse(text).unwrap_err());
             assert!(wrong.contains(word), "{wrong}");

@@ -172,11 +172,10 @@ pub fn set(client: &mut Client, setting: Setting) -> anyhow::Result<()> {
 }
 
 fn list(settings: &[Setting]) -> String {
-    let trusted = settings::trusts_line(settings);
     let line = |setting: &Setting| match SettingId::from_number(setting.id) {
         Some(id) => {
             let row = id.row();
-            let (min, max) = row.range_in_force(trusted).into_inner();
+            let (min, max) = row.range().into_inner();
             let changed = if setting.value == row.default { ' ' } else { '*' };
             format!(
                 "{changed} {:<28}{:>9} {:<10} {min} to {max}, default {}: {}\n",

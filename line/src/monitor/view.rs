@@ -1,7 +1,6 @@
 //! What is known of a board from what it has said: all that the screen shows.
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
-use std::ops::RangeInclusive;
 use std::time::{Duration, Instant};
 
 use tenax_hal_shim::channel::{CHANNELS, mv_from_sample};
@@ -148,11 +147,6 @@ impl View {
     /// A setting in force, if it was said.
     pub fn setting(&self, id: SettingId) -> Option<i32> {
         self.settings.get(&id.number()).copied()
-    }
-
-    /// The values of a setting that the board accepts now.
-    pub fn range_in_force(&self, id: SettingId) -> RangeInclusive<i32> {
-        id.row().range_in_force(self.setting(SettingId::LineTrusted) == Some(1))
     }
 
     /// Frames of the board's time that went by in a second here, and slow frames that came.

@@ -155,7 +155,7 @@ pub fn settings(view: &View, control: bool) -> Value {
         .into_iter()
         .map(|id| {
             let row = id.row();
-            let (min, max) = view.range_in_force(id).into_inner();
+            let (min, max) = row.range().into_inner();
             json!({
                 "name": row.name, "unit": row.unit, "min": min, "max": max, "default": row.default,
                 "meaning": row.meaning, "value": view.setting(id), "trace": Trace::of(id),

@@ -3,101 +3,73 @@
 use core::ops::Range;
 
 use tenax_hal_shim::channel::SLOW_HZ;
+use tenax_hal_shim::detector::{DetectorHealth, DetectorId, Direction};
 use tenax_hal_shim::schedule::ARRAY_SHARES;
 
-use super::network::{LookBack, Mlp};
+use super::network::Mlp;
 use super::preprocess::{Features, Preprocessor, PreprocessorConfig};
-use super::{COVARIANCE_WINDOW, FEATURES, Reading, SPECTRUM_WINDOW};
+use super::{ARRAY_READ, COVARIANCE_WINDOW, HIDDEN, Reading, ShippedDetector};
+use crate::detectors::{Description, Detector, Said, Sensed};
 
-/// Number of shares of a slow frame's work, one a tick, about equally long: all of it would not fit into one tick. Share 0:
-/// covariance, its features, spectrum. 1: features of the spectrum, structure functions of short lags. 2: those of long lags, a
-/// quarter of the first layer. 3: half of the first layer. 4: the rest of the network, and the verdict.
+/// Shares of a slow frame's work, one a tick, about equally long. 0: covariance, spectrum. 1: features of the
+/// spectrum, short lags. 2: long lags, a quarter of the first layer. 3: half of it. 4: the rest, and the
+/// verdict.
 pub const SHARES: usize = ARRAY_SHARES as usize;
+/// Units of the first layer.
+const H1: usize = HIDDEN[0];
 const VERDICT_SHARE: usize = SHARES - 1;
 const _: () = assert!(VERDICT_SHARE == 4);
 
-/// Verdict of the normal-force array (Bamshad 2023).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ArrayVerdict {
-    /// Whether the object slips.
     pub slip: bool,
-    /// Probability of slip, 0 to 1000 per mille: the calibrated logit's logistic function.
+    /// Logistic function of the calibrated logit, 0 to 1000 per mille.
     pub confidence_permille: u16,
-    /// Time since the detector last had valid features, at the end of the last slow frame, ms, at most 65 535; 0 while it works.
+    /// Time since the last valid features, ms, saturating at 65 535; 0 while it works.
     pub age_ms: u16,
 }
 
 impl ArrayVerdict {
-    /// The verdict before the first features.
     pub const NONE: Self = Self { slip: false, confidence_permille: 0, age_ms: u16::MAX };
 }
 
-/// Calibration and thresholds of the logit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Judgement {
-    /// Increase of the logit that multiplies the odds of slip by e: the calibration.
     pub logit_per_nat: i32,
-    /// Slow frames with at least this confidence count as slip, per mille.
+    /// Confidence from which a slow frame counts as slip, per mille.
     pub on_permille: u16,
-    /// Slow frames with less confidence count as no slip, per mille.
+    /// Confidence below which a slow frame counts as no slip, per mille.
     pub off_permille: u16,
-    /// Number of consecutive slip frames after which slip is reported.
+    /// Consecutive slip frames after which slip is reported.
     pub on_frames: u8,
-    /// Number of consecutive frames without slip after which the report ends.
+    /// Consecutive frames without slip after which the report ends.
     pub off_frames: u8,
 }
 
-/// Constants of a trained detector on windows of `N` differences and `M` sums.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Model<
-    const H1: usize,
-    const L: usize,
-    const H2: usize,
-    const N: usize = COVARIANCE_WINDOW,
-    const M: usize = SPECTRUM_WINDOW,
-> {
-    /// Settings of the network's features.
+pub struct Model<const N: usize = COVARIANCE_WINDOW> {
     pub preprocessor: PreprocessorConfig,
-    /// The network.
-    pub network: Mlp<FEATURES, H1, L, H2>,
-    /// Calibration of the network's logit, and the thresholds of the verdict.
+    pub network: Mlp,
     pub judgement: Judgement,
 }
 
-/// Slip detector of ten taxels (Bamshad 2023): features, the network of a [`Model`], and the verdict with its two thresholds.
 #[derive(Clone, Debug)]
-pub struct ArrayDetector<
-    'm,
-    const H1: usize,
-    const L: usize,
-    const H2: usize,
-    const N: usize = COVARIANCE_WINDOW,
-    const M: usize = SPECTRUM_WINDOW,
-> {
-    model: &'m Model<H1, L, H2, N, M>,
-    preprocessor: Preprocessor<N, M>,
-    look_back: LookBack<H1, L>,
-    /// Slow frames in a row that contradict the verdict.
+pub struct ArrayDetector<'m, const N: usize = COVARIANCE_WINDOW> {
+    model: &'m Model<N>,
+    preprocessor: Preprocessor<N>,
     contradicted: u8,
-    /// Slow frames since the last one that was judged.
     unjudged: u16,
-    /// Whether the last features still wait for the network.
     felt: bool,
-    /// Activations of the first layer, computed in the last three shares.
     seen: [i16; H1],
     logit: Option<i32>,
     verdict: ArrayVerdict,
 }
 
-impl<'m, const H1: usize, const L: usize, const H2: usize, const N: usize, const M: usize>
-    ArrayDetector<'m, H1, L, H2, N, M>
-{
-    /// A detector without readings.
-    pub fn new(model: &'m Model<H1, L, H2, N, M>) -> Self {
+impl<'m, const N: usize> ArrayDetector<'m, N> {
+    pub fn new(model: &'m Model<N>) -> Self {
         Self {
             model,
             preprocessor: Preprocessor::new(model.preprocessor),
-            look_back: LookBack::default(),
             contradicted: 0,
             unjudged: u16::MAX,
             felt: false,
@@ -107,17 +79,14 @@ impl<'m, const H1: usize, const L: usize, const H2: usize, const N: usize, const
         }
     }
 
-    /// Takes the readings of one slow frame and returns the verdict.
-    ///
-    /// While there are no features (windows not full, too many elements dead) the verdict is no slip, confidence 0, and
-    /// an age, ms, that grows until there are features again.
+    /// Verdict of one slow frame. Without features: no slip, confidence 0, and a growing age.
     pub fn push(&mut self, reading: &Reading) -> ArrayVerdict {
         (0..SHARES).for_each(|share| _ = self.work(share, reading));
         self.verdict
     }
 
-    /// Does one share of [`push`](Self::push), 0 to [`SHARES`] less one in this order, and gives the verdict with the last.
-    /// Only share 0 uses `reading`; a larger share does nothing.
+    /// One share of [`push`](Self::push), in their order; the verdict with the last. Only share 0 uses
+    /// `reading`.
     pub fn work(&mut self, share: usize, reading: &Reading) -> Option<ArrayVerdict> {
         match share {
             0 => self.preprocessor.add_reading(reading),
@@ -136,15 +105,14 @@ impl<'m, const H1: usize, const L: usize, const H2: usize, const N: usize, const
         None
     }
 
-    /// Some units of the first layer.
     fn see(&mut self, units: Range<usize>) {
         if self.felt {
-            self.model.network.see_some(self.preprocessor.features(), units, &mut self.seen);
+            self.model.network.first.activate(self.preprocessor.features(), units, &mut self.seen);
         }
     }
 
     fn decide(&mut self) -> ArrayVerdict {
-        self.logit = self.evidence();
+        self.logit = core::mem::take(&mut self.felt).then(|| self.model.network.judge(&self.seen));
         match self.logit {
             Some(logit) => self.judge(logit),
             None => self.stand_down(),
@@ -152,25 +120,15 @@ impl<'m, const H1: usize, const L: usize, const H2: usize, const N: usize, const
         self.verdict
     }
 
-    fn evidence(&mut self) -> Option<i32> {
-        if !core::mem::take(&mut self.felt) {
-            self.look_back.clear();
-            return None;
-        }
-        Some(self.model.network.judge(self.look_back.push(self.seen)?))
-    }
-
-    /// The network's logit of the last slow frame. None without features.
+    /// None without features.
     pub fn logit(&self) -> Option<i32> {
         self.logit
     }
 
-    /// The last features. Invalid while [`logit`](Self::logit) is None.
     pub fn features(&self) -> &Features {
         self.preprocessor.features()
     }
 
-    /// The last verdict.
     pub fn verdict(&self) -> ArrayVerdict {
         self.verdict
     }
@@ -201,16 +159,39 @@ impl<'m, const H1: usize, const L: usize, const H2: usize, const N: usize, const
     }
 }
 
-/// Points of the logistic function, four to a unit.
+impl Detector for ShippedDetector {
+    const ID: DetectorId = DetectorId::Mlp;
+    type Config = ();
+
+    /// Lost frames do their share too: it needs no sample of theirs, and an old verdict would stand
+    /// meanwhile.
+    fn step(&mut self, _config: &(), sensed: &Sensed<'_>) -> Option<Said> {
+        let share = sensed.slot.checked_sub(ARRAY_READ)?;
+        self.work(share.into(), sensed.taxels).map(|verdict| Said::slip(verdict.slip))
+    }
+
+    fn describe(&self, _config: &()) -> Description {
+        let verdict = self.verdict();
+        Description {
+            confidence_permille: verdict.confidence_permille,
+            direction: Direction::Unknown,
+            health: match verdict.age_ms {
+                0 => DetectorHealth::Working,
+                u16::MAX => DetectorHealth::Starting,
+                _ => DetectorHealth::Blind,
+            },
+            raw: self.logit().unwrap_or(0),
+        }
+    }
+}
+
 const LOGISTIC: [u16; 33] = [
     500, 562, 622, 679, 731, 777, 818, 852, 881, 905, 924, 940, 953, 963, 971, 977, 982, 986, 989, 991, 993,
     995, 996, 997, 998, 998, 998, 999, 999, 999, 999, 1_000, 1_000,
 ];
 
-/// Returns the logistic function of a logit, 0 to 1000 per mille: `1000 / (1 + exp(-logit / per_nat))`, interpolated
-/// between points a quarter apart. The error is at most 3. `per_nat` is the rise of the logit that multiplies the
-/// odds by e; a value below 1 counts as 1.
-#[must_use]
+/// `1000 / (1 + exp(-logit / per_nat))`, per mille, interpolated between points a quarter apart; error at
+/// most 3. `per_nat` below 1 counts as 1.
 pub fn logistic_permille(logit: i32, per_nat: i32) -> u16 {
     let per_nat = i64::from(per_nat.max(1));
     let quarters = i64::from(logit).abs() * 4;

@@ -1,15 +1,12 @@
-//! Logarithmic scale of the features, for weak and strong slip.
-//!
-//! The bits of a positive IEEE 754 number, read as an integer, are its base-2 logarithm: exact at powers of two, straight
-//! lines between (Mitchell 1962), and at most 0.086 too small. It is monotonic, which is all that a network needs, and
-//! takes one addition. Below `knee` the result is proportional to the value, so noise around zero stays small.
+//! Logarithmic scale of the features: the bits of a positive IEEE 754 number, read as an integer, are its
+//! base-2 logarithm, at most 0.086 too small (Mitchell 1962). Below `knee` the result is proportional to the
+//! value.
 
 /// Fraction bits of a feature: 2^9 is one doubling of a power, 2^10 one of an amplitude.
 pub const FEATURE_Q: u32 = 9;
-/// Fraction bits of a single.
 const SINGLE_Q: u32 = 23;
 
-/// The feature value (samples^2) below which the scale is about linear and above which it is logarithmic.
+/// Value, samples^2, below which the scale is about linear and above which it is logarithmic.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Knee {
     value: f32,
@@ -17,22 +14,17 @@ pub struct Knee {
 }
 
 impl Knee {
-    /// At `value`, in the unit of what it is used on; 0 is taken as 1.
     pub const fn at(value: u32) -> Self {
         let value = if value == 0 { 1.0 } else { value as f32 };
         Self { value, bits: value.to_bits() as i32 }
     }
 
-    /// `log2(1 + magnitude / knee)`, Q9, rounded down. `magnitude` is not negative and below 2^62 times the knee:
-    /// the result is below 2^15.
-    #[must_use]
+    /// `log2(1 + magnitude / knee)`, Q9, rounded down, below 2^15. `magnitude` is 0 to 2^62 times the knee.
     #[inline]
     pub fn of(self, magnitude: f32) -> i16 {
         (((magnitude + self.value).to_bits() as i32 - self.bits) >> (SINGLE_Q - FEATURE_Q)) as i16
     }
 
-    /// [`of`](Self::of) the magnitude, with the value's sign.
-    #[must_use]
     #[inline]
     pub fn signed(self, value: i32) -> i16 {
         let size = self.of(value.unsigned_abs() as f32);
@@ -63,18 +55,7 @@ mod tests {
                 );
             }
         }
-    }
-
-    #[test]
-    fn it_never_falls_and_is_odd() {
-        let mut sorted: std::vec::Vec<u32> = values().filter(|&v| v < 1 << 31).collect();
-        sorted.sort_unstable();
-        for pair in sorted.windows(2) {
-            let knee = Knee::at(100);
-            assert!(knee.of(pair[0] as f32) <= knee.of(pair[1] as f32));
-            assert_eq!(knee.signed(-(pair[1] as i32)), -knee.signed(pair[1] as i32));
-        }
         assert_eq!(Knee::at(0), Knee::at(1));
-        assert!(Knee::at(1).signed(i32::MIN) < -15_000);
+        assert!(Knee::at(1).signed(i32::MIN) < -15_000 && Knee::at(1).signed(i32::MAX) > 15_000);
     }
 }

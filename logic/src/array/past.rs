@@ -4,43 +4,37 @@ use tenax_hal_shim::channel::{ARRAY, CHANNELS, sample_from_mv};
 
 use super::{ELEMENTS, Reading};
 
-/// The longest lag of a change, slow frames: half a second, for sensors that creep.
+/// Longest lag of a change, slow frames: half a second, for sensors that creep.
 pub const LAG_MAX: usize = 40;
 const FRAMES: usize = LAG_MAX + 1;
 
-/// The last readings of every element.
 #[derive(Clone, Debug)]
 pub struct Past {
     frames: [[u16; ELEMENTS]; FRAMES],
     newest: usize,
-    /// Number of consecutive frames with a reading of each element, `FRAMES` at most.
+    /// Consecutive frames with a reading, `FRAMES` at most.
     runs: [u8; ELEMENTS],
 }
 
-/// Result of one more reading.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Arrival {
-    /// Elements without a reading.
     pub dead: usize,
     /// Elements without a reading that had one in the slow frame before.
     pub gone: [bool; ELEMENTS],
     /// Change of the elements' sum, samples. An element without a reading keeps its last value.
     pub change: i32,
-    /// The part of `change` from elements that had no reading in the slow frame before, samples.
+    /// Part of `change` from elements that had no reading in the slow frame before, samples.
     pub missed: i32,
 }
 
-/// Change of each element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Changes {
-    /// Change, samples; 0 for an element that lacked a reading in between.
+    /// Samples; 0 for an element that lacked a reading in between.
     pub of: [i32; ELEMENTS],
-    /// Number of elements whose change is known.
     pub known: i32,
 }
 
 impl Default for Past {
-    /// No readings yet; every element at its rest voltage.
     fn default() -> Self {
         let rest = sample_from_mv(CHANNELS[ARRAY].rest_mv);
         Self { frames: [[rest; ELEMENTS]; FRAMES], newest: 0, runs: [0; ELEMENTS] }
@@ -48,7 +42,6 @@ impl Default for Past {
 }
 
 impl Past {
-    /// Takes a slow frame's reading.
     pub fn push(&mut self, reading: &Reading) -> Arrival {
         let mut arrival = Arrival::default();
         let mut now = self.frames.get(self.newest).copied().unwrap_or_default();
@@ -75,8 +68,8 @@ impl Past {
         arrival
     }
 
-    /// The change of each element over `lag` slow frames, clamped to 1..=[`LAG_MAX`] (equation 1: 1).
-    #[must_use]
+    /// Change of each element over `lag` slow frames, clamped to 1..=[`LAG_MAX`] (Bamshad 2023, equation 1:
+    /// 1).
     #[inline]
     pub fn changes(&self, lag: usize) -> Changes {
         let lag = lag.clamp(1, LAG_MAX);

@@ -7,34 +7,29 @@ use super::spectrum::SlidingSpectrum;
 use super::structure::{self, Structure, WINDOWS};
 use super::{COVARIANCE_WINDOW, COVARIANCES, FEATURES, PAPER_FEATURES, Reading, SPECTRUM_WINDOW};
 
-/// Inputs of the network for one slow frame: 55 covariances, row by row of the upper triangle, then 21 spectral bins, then
-/// 36 sums of structure functions, lag by lag, the newest window first, one of them as its quiet level.
-///
-/// Each is a logarithm, Q9 ([`logarithm`](super::logarithm)): `sign(c) log2(1 + |c| / knee)` of a covariance,
-/// `log2(1 + p / knee)` of a bin's power, `log2(1 + s / (knee frames))` of a sum over so many frames. 512 is one doubling.
-/// A covariance is within +-2^14, a bin within 0..2^15, a sum within 0..2^14.
+/// 55 covariances, row by row of the upper triangle, then 21 spectral bins, then 36 sums of structure
+/// functions, lag by lag, the newest window first, one of them as its quiet level. Each is a logarithm, Q9:
+/// `sign(c) log2(1 + |c| / knee)` of a covariance (within +-2^14), `log2(1 + p / knee)` of a bin's power
+/// (0..2^15), `log2(1 + s / (knee frames))` of a sum over so many frames (0..2^14).
 pub type Features = [i16; FEATURES];
 
-/// Settings of the features.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PreprocessorConfig {
-    /// Lag of a difference, slow frames, 1 to [`LAG_MAX`]; other values are clamped. Bamshad 2023, equation 1, has a
-    /// lag of 1.
+    /// Lag of a difference, slow frames, clamped to 1..=[`LAG_MAX`]. Bamshad 2023, equation 1: 1.
     pub lag: u8,
-    /// Covariance below which a feature is linear instead of logarithmic, samples^2: about that of noise alone.
+    /// samples^2.
     pub covariance_knee: u32,
-    /// Power of a bin below which a feature is linear instead of logarithmic, samples^2.
+    /// samples^2.
     pub spectrum_knee: u32,
-    /// Knee of a structure function's sum for each slow frame of its window, samples^2 times the number of elements.
-    /// Below the knee a feature is linear instead of logarithmic.
+    /// samples^2 times the number of elements, for each slow frame of a window.
     pub structure_knee: u32,
     /// Most elements without a reading with which there are features.
     pub dead_max: u8,
 }
 
 impl PreprocessorConfig {
-    /// For elements of 200 mV/N with half a millivolt of noise: 2.5 samples, so 12.5 squared in a difference, ten of
-    /// which make a variance, and 6.2 in a reading, 400 of which make a bin's power.
+    /// For 200 mV/N with half a millivolt (2.5 samples) of noise: 12.5 squared in a difference, ten of which
+    /// make a variance; 6.2 in a reading, 400 of which make a bin's power.
     pub const DEFAULT: Self =
         Self { lag: 1, covariance_knee: 128, spectrum_knee: 2_048, structure_knee: 128, dead_max: 2 };
 }
@@ -45,29 +40,24 @@ impl Default for PreprocessorConfig {
     }
 }
 
-/// Covariance over `N` differences, spectrum over `M` sums and structure functions of the readings pushed so far.
-///
-/// If an element loses its reading, its differences and covariances become 0, also those of earlier frames, whose readings are
-/// suspect. The sum keeps its last value, and the structure functions begin anew except for the quiet level. When its readings
-/// return, or begin, that counts as no change: the missed force is added to the spectrum's whole window as a constant, and
-/// differences begin with its second reading.
+/// Covariance over `N` differences, spectrum over 40 sums and structure functions. Of an element that loses
+/// its reading, differences and covariances become 0, the sum keeps its last value, and the structure
+/// functions begin anew. Its return counts as no change: the missed force is added to the spectrum's whole
+/// window, and differences begin with its second reading.
 #[derive(Clone, Debug)]
-pub struct Preprocessor<const N: usize = COVARIANCE_WINDOW, const M: usize = SPECTRUM_WINDOW> {
+pub struct Preprocessor<const N: usize = COVARIANCE_WINDOW> {
     config: PreprocessorConfig,
     covariance_knee: Knee,
     spectrum_knee: Knee,
     structure_knees: [Knee; WINDOWS],
-    /// Lag of a difference, slow frames.
     lag: usize,
     past: Past,
-    /// Whether the windows are full and enough elements have a reading.
     ready: bool,
     /// Force of all elements above rest, samples.
     sum: i32,
     covariance: SlidingCovariance<N>,
-    spectrum: SlidingSpectrum<M>,
+    spectrum: SlidingSpectrum<SPECTRUM_WINDOW>,
     structure: Structure,
-    /// Readings that are still missing before the windows are full.
     missing: usize,
     features: Features,
 }
@@ -78,8 +68,7 @@ impl Default for Preprocessor {
     }
 }
 
-impl<const N: usize, const M: usize> Preprocessor<N, M> {
-    /// A preprocessor without readings.
+impl<const N: usize> Preprocessor<N> {
     pub fn new(config: PreprocessorConfig) -> Self {
         let lag = usize::from(config.lag).clamp(1, LAG_MAX);
         Self {
@@ -94,19 +83,19 @@ impl<const N: usize, const M: usize> Preprocessor<N, M> {
             covariance: SlidingCovariance::default(),
             spectrum: SlidingSpectrum::default(),
             structure: Structure::default(),
-            missing: (N + lag).max(M).max(structure::READY_AFTER),
+            missing: (N + lag).max(SPECTRUM_WINDOW).max(structure::READY_AFTER),
             features: [0; FEATURES],
         }
     }
 
-    /// Takes one slow frame. None until the windows are full, and while too many elements have no reading.
+    /// None until the windows are full, and while too many elements have no reading.
     pub fn push(&mut self, reading: &Reading) -> Option<&Features> {
         self.add_reading(reading);
         self.add_spectrum();
         self.finish()
     }
 
-    /// The first third of [`push`](Self::push): equations 1 to 4 with their features, and the transform.
+    /// First third of [`push`](Self::push): equations 1 to 4 with their features, and the transform.
     pub fn add_reading(&mut self, reading: &Reading) {
         let arrival = self.past.push(reading);
         if arrival.gone.contains(&true) {
@@ -128,8 +117,7 @@ impl<const N: usize, const M: usize> Preprocessor<N, M> {
         }
     }
 
-    /// The second third: the spectrum's features, and the structure functions of the shorter lags. Once for each
-    /// [`add_reading`](Self::add_reading).
+    /// Second third: the spectrum's features and the shorter lags.
     pub fn add_spectrum(&mut self) {
         self.structure.push_short(&self.past);
         if self.ready {
@@ -139,7 +127,6 @@ impl<const N: usize, const M: usize> Preprocessor<N, M> {
         }
     }
 
-    /// The last: those of the longer lags, and the features of all of them. Once for each [`add_spectrum`](Self::add_spectrum).
     pub fn finish(&mut self) -> Option<&Features> {
         self.structure.push_long(&self.past);
         if !self.ready {
@@ -149,18 +136,15 @@ impl<const N: usize, const M: usize> Preprocessor<N, M> {
         Some(&self.features)
     }
 
-    /// The last features that [`push`](Self::push) gave.
     pub fn features(&self) -> &Features {
         &self.features
     }
 
-    /// The covariances behind the last features, samples^2.
     pub fn covariance(&self) -> &SlidingCovariance<N> {
         &self.covariance
     }
 
-    /// The spectrum behind the last features.
-    pub fn spectrum(&self) -> &SlidingSpectrum<M> {
+    pub fn spectrum(&self) -> &SlidingSpectrum<SPECTRUM_WINDOW> {
         &self.spectrum
     }
 }

@@ -19,15 +19,15 @@ const fn layer<const I: usize, const O: usize>(
 }
 
 /// Settings of the features, weights and thresholds of the shipped detector.
-pub static MODEL: Model<32, 1, 16> = Model {
+pub static MODEL: Model = Model {
     preprocessor: PreprocessorConfig {
         covariance_knee: 128,
         spectrum_knee: 2048,
         structure_knee: 128,
         ..PreprocessorConfig::DEFAULT
     },
-    network: match Mlp::new(
-        layer::<112, 32>(
+    network: Mlp {
+        first: layer::<112, 32>(
             [
                 [
                     -1, -3, -5, 1, -1, -3, -5, 1, 6, 7, -34, 1, 0, -1, -9, -1, -2, 3, -4, 12, -5, -8, -11,
@@ -261,7 +261,7 @@ pub static MODEL: Model<32, 1, 16> = Model {
             ],
             7,
         ),
-        [layer(
+        second: layer(
             [
                 [
                     -19, -13, -47, 24, -73, -55, 31, 57, -123, 25, 44, 10, -16, 14, -19, 7, 56, 59, 50, 86,
@@ -333,15 +333,12 @@ pub static MODEL: Model<32, 1, 16> = Model {
                 -6826, 19223, -36722,
             ],
             7,
-        )],
-        layer::<16, 1>(
+        ),
+        last: layer::<16, 1>(
             [[-113, 121, -77, -74, 82, -107, -117, -68, 64, -77, 4, -121, 107, -127, -90, 111]],
             [75467],
             0,
         ),
-    ) {
-        Ok(network) => network,
-        Err(_) => panic!("a sum could overflow"),
     },
     judgement: Judgement {
         logit_per_nat: 108212,

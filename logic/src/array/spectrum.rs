@@ -1,12 +1,6 @@
-//! Sliding discrete Fourier transform of the elements' sum (Bamshad 2023, section 4.3).
-//!
-//! 40 samples are not a power of two, and need not be: each bin is kept as the sum that defines it, and a new sample
-//! replaces the one 40 frames before it, whose twiddle factor was the same one. In integers that is exact and never
-//! drifts; a bin costs two multiply-accumulates a frame instead of a transform. What is left of a zero-padded or windowed
-//! 64-point transform's trouble - leakage of the resting force into every bin - is not there either: a constant
-//! contributes to bin 0 only, so no mean has to be removed.
-//!
-//! The phase is counted from a fixed frame, not from the window's first sample. Magnitudes do not know the difference.
+//! Sliding discrete Fourier transform of the elements' sum (Bamshad 2023, section 4.3). Each bin is the sum
+//! that defines it, in integers, so nothing drifts; a constant contributes to bin 0 only. The phase is
+//! counted from a fixed frame.
 
 use super::{BINS, SPECTRUM_WINDOW};
 
@@ -24,7 +18,6 @@ const QUARTER_WAVE: [i32; SPECTRUM_WINDOW / 4 + 1] = [
     167_970_228,
     0,
 ];
-/// Fraction bits of a twiddle factor.
 const TWIDDLE_Q: u32 = 30;
 
 /// `(cos, -sin)` of `2 pi n / 40`, Q30.
@@ -46,18 +39,16 @@ const fn cosine(n: usize) -> i32 {
     if n > half / 2 { -QUARTER_WAVE[half - n] } else { QUARTER_WAVE[n] }
 }
 
-/// Sliding DFT (Bamshad 2023, section 4.3) of the last `M` sums of all taxels, one a slow frame. `M` is 40, 20 or 10, with bins 0 to M / 2.
+/// Sliding DFT of the last `M` sums of all taxels; `M` is 40, 20 or 10, with bins 0 to M / 2.
 #[derive(Clone, Debug)]
 pub struct SlidingSpectrum<const M: usize> {
     window: [i32; M],
-    /// Frames modulo M: where the oldest sum is, and the newest one's angle.
     place: usize,
     /// Real and imaginary part, Q30. Ten elements of 14 bits and 40 sums stay below 2^53.
     bins: [[i64; 2]; BINS],
 }
 
 impl<const M: usize> Default for SlidingSpectrum<M> {
-    /// The spectrum of an array at rest: all bins are 0.
     fn default() -> Self {
         const { assert!(M >= 2 && M.is_multiple_of(2) && SPECTRUM_WINDOW.is_multiple_of(M)) }
         Self { window: [0; M], place: 0, bins: [[0; 2]; BINS] }
@@ -65,7 +56,7 @@ impl<const M: usize> Default for SlidingSpectrum<M> {
 }
 
 impl<const M: usize> SlidingSpectrum<M> {
-    /// Adds the newest sum, samples within +-2^20, and drops the oldest.
+    /// `sum`: samples within +-2^20.
     #[inline]
     pub fn push(&mut self, sum: i32) {
         let Some(oldest) = self.window.get_mut(self.place) else { return };
@@ -82,7 +73,7 @@ impl<const M: usize> SlidingSpectrum<M> {
         }
     }
 
-    /// Adds a constant to every sum of the window, samples. Only bin 0 changes: the other bins' twiddle factors add up to 0.
+    /// Adds a constant to the whole window. Only bin 0 changes: the other bins' twiddle factors add up to 0.
     pub fn shift(&mut self, by: i32) {
         for sum in &mut self.window {
             *sum += by;
@@ -92,9 +83,8 @@ impl<const M: usize> SlidingSpectrum<M> {
         }
     }
 
-    /// Squared magnitudes, in the square of the sums' unit: `|sum over n of s_n exp(-2 pi i k n / M)|^2`.
-    ///
-    /// Real and imaginary part are rounded down to the sums' unit, and the squares to 24 bits, on every machine alike.
+    /// `|sum over n of s_n exp(-2 pi i k n / M)|^2`. Real and imaginary part are rounded down to the sums'
+    /// unit, the squares to 24 bits.
     #[inline]
     pub fn powers(&self) -> [f32; BINS] {
         self.bins.map(|[re, im]| {
@@ -110,24 +100,6 @@ mod tests {
     use super::*;
     use core::f64::consts::PI;
     use std::vec::Vec;
-
-    #[test]
-    fn twiddles_are_right_and_a_constant_reaches_bin_0_only() {
-        for (n, [cos, minus_sin]) in TWIDDLES.iter().enumerate() {
-            let angle = 2.0 * PI * n as f64 / SPECTRUM_WINDOW as f64;
-            let scale = f64::from(1 << TWIDDLE_Q);
-            assert!((angle.cos() * scale - f64::from(*cos)).abs() <= 0.5, "{n}");
-            assert!((-angle.sin() * scale - f64::from(*minus_sin)).abs() <= 0.5, "{n}");
-        }
-        for bin in 1..BINS {
-            let sum = |part: usize| {
-                (0..SPECTRUM_WINDOW)
-                    .map(|n| i64::from(TWIDDLES[n * bin % SPECTRUM_WINDOW][part]))
-                    .sum::<i64>()
-            };
-            assert_eq!((sum(0), sum(1)), (0, 0), "{bin}");
-        }
-    }
 
     /// The definition, in `f64`.
     fn powers_of(window: &[i32]) -> Vec<f64> {

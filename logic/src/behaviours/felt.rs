@@ -1,60 +1,44 @@
-//! Input of a behaviour in one tick: the skin's cells, slip, and the load.
-//!
-//! The skin's cells are the camera's markers while it sees, and the taxels of the normal-force array while it does not.
+//! Input of a behaviour: slip, load, and the skin's cells. These are the camera's markers while it sees, else
+//! the taxels.
 
 use tenax_hal_shim::behaviour::{CameraView, MARKERS, NORMAL_STEP_MN, SHEAR_STEP_MN, UNTRACKED};
 
 use crate::array::{ELEMENTS, Reading};
 use crate::grip::Grip;
 
-/// Samples for 1 N on a taxel (200 mV/N, `docs/hardware.md`), so that a sample is about 1 mN.
+/// 200 mV/N (`docs/hardware.md`): a sample is about 1 mN.
 const TAXEL_SAMPLES_PER_N: i32 = 993;
 
 /// Scores of a cell's normal force, mN: noise, sufficient, medium, large (FingerVision 2017, section II-A).
 const SCORES: [(i32, u16); 3] = [(300, 5), (100, 3), (30, 1)];
-/// A cell feels a changed force if its reading differs by this, mN, or by a quarter of its first reading.
+/// Change of a cell that counts, mN, or a quarter of its first reading.
 const CHANGE_MN: i32 = 60;
 
-/// The skin as a whole is pulled at if all markers together are sheared by so much more than at first, mN: three times what
-/// noise of 10 mN a marker and their steps come to. A light object's pull is too small for any one of them.
+/// Shear of all markers together that is a pull, mN: three times what noise of 10 mN a marker comes to. A
+/// light object's pull is too small for any single one.
 const PULL_MN: i32 = 250;
 
-/// Input of a behaviour in one tick.
 #[derive(Clone, Copy, Debug)]
 pub struct Felt<'a> {
-    /// The camera's last picture, None if it is too old.
+    /// None if it is too old.
     pub view: Option<&'a CameraView>,
-    /// Whether the picture came in this tick.
     pub view_is_new: bool,
-    /// Whether this tick ends a slow frame, so that every taxel has been read anew.
     pub cycle_is_over: bool,
-    /// The normal-force array's last readings.
     pub taxels: &'a Reading,
-    /// The load.
     pub grip: Grip,
-    /// Whether a believed detector reports slip.
     pub slips: bool,
-    /// Whether the films' vibration is above half of S1's threshold.
+    /// Vibration of the films above half of S1's threshold.
     pub stirs: bool,
 }
 
-/// The skin's cells with their readings at the behaviour's begin: the camera's markers if it sees them, else the
-/// taxels.
+/// Readings at the behaviour's begin, mN for markers, 14-bit samples for taxels.
 #[derive(Clone, Copy, Debug)]
 pub enum Skin {
-    /// The camera's markers.
-    Markers {
-        /// Normal force at the behaviour's begin, mN.
-        normal_mn: [Option<i16>; MARKERS],
-        /// Shear at the behaviour's begin, mN.
-        shear_mn: [i16; MARKERS],
-    },
-    /// The taxels' 14-bit samples at the behaviour's begin; None for a taxel without a valid reading.
+    Markers { normal_mn: [Option<i16>; MARKERS], shear_mn: [i16; MARKERS] },
     Taxels([Option<u16>; ELEMENTS]),
 }
 
 impl Skin {
-    /// The present readings. None if no skin gives valid readings.
     pub fn now(felt: &Felt<'_>) -> Option<Self> {
         if let Some(view) = felt.view {
             return Some(Self::Markers {
@@ -65,9 +49,8 @@ impl Skin {
         felt.taxels.iter().any(Option::is_some).then_some(Self::Taxels(*felt.taxels))
     }
 
-    /// The sum of the cells' scores (section II-A). Markers start from no force; taxels from their first readings, when
-    /// the finger must be empty. None while the skin of the begin gives no readings.
-    #[must_use]
+    /// Sum of the cells' scores (section II-A). Markers start from no force; taxels from their first
+    /// readings, when the finger must be empty. None while the skin of the begin gives no readings.
     pub fn score(&self, felt: &Felt<'_>) -> Option<u16> {
         match (self, felt.view) {
             (Self::Markers { .. }, Some(view)) => {
@@ -83,8 +66,6 @@ impl Skin {
         }
     }
 
-    /// Whether the markers' shear together differs from the first picture's by more than [`PULL_MN`].
-    #[must_use]
     pub fn is_pulled(&self, felt: &Felt<'_>) -> bool {
         let (Self::Markers { normal_mn: normals, shear_mn: shears }, Some(view)) = (self, felt.view) else {
             return false;
@@ -96,9 +77,8 @@ impl Skin {
         (0..MARKERS).filter_map(sheared).sum::<i32>().abs() > PULL_MN
     }
 
-    /// How many cells feel another force than at first (section II-C). None while the skin of the beginning gives no
-    /// numbers.
-    #[must_use]
+    /// Cells whose force differs from the first (section II-C). None while the skin of the begin gives no
+    /// readings.
     pub fn changed(&self, felt: &Felt<'_>) -> Option<u16> {
         match (self, felt.view) {
             (Self::Markers { normal_mn: normals, shear_mn: shears }, Some(view)) => {
@@ -117,7 +97,6 @@ impl Skin {
                 };
                 let mut known = (0..ELEMENTS).filter_map(changed).peekable();
                 known.peek()?;
-                // There are fewer taxels than markers.
                 Some(known.sum::<u16>() * (MARKERS / ELEMENTS) as u16)
             }
         }
@@ -125,21 +104,17 @@ impl Skin {
 }
 
 impl Felt<'_> {
-    /// Whether the skin may feel something new: a picture came, or a cycle of the taxels is over. In between nobody needs to look at
-    /// every cell.
     pub const fn skin_is_new(&self) -> bool {
         self.view_is_new || self.cycle_is_over
     }
 
-    /// Whether the camera sees moving points (section II-B). `sensitively`: half as many are enough (section II-D).
-    #[must_use]
     pub fn is_moving(&self, moving_e4: u16, sensitively: bool) -> bool {
         let least = if sensitively { moving_e4 / 2 } else { moving_e4 };
         self.view.is_some_and(|view| view.moving_e4 > least)
     }
 }
 
-/// Normal force and shear on all markers together, mN.
+/// Sums of normal force and shear, mN.
 #[inline(never)]
 pub fn skin_mn(view: &CameraView) -> [i32; 2] {
     let of = |n: usize| normal_mn(view, n).map(|mn| [i32::from(mn), shear_mn(view, n).into()]);
@@ -194,11 +169,6 @@ mod tests {
     }
 
     #[test]
-    fn a_force_is_scored_0_1_3_or_5() {
-        assert_eq!([0, 29, 30, 99, 100, 299, 300, 2_000].map(score), [0, 0, 1, 1, 3, 3, 5, 5]);
-    }
-
-    #[test]
     fn markers_count_while_the_camera_sees_and_taxels_while_it_does_not() {
         let (light, none) = (view(3, 0), [None; ELEMENTS]);
         let skin = Skin::now(&felt(Some(&light), &none)).expect("markers");
@@ -209,6 +179,7 @@ mod tests {
         let (rest, pressed) = ([Some(2_000); ELEMENTS], [Some(2_110); ELEMENTS]);
         let skin = Skin::now(&felt(None, &rest)).expect("taxels");
         assert_eq!(skin.score(&felt(None, &rest)), Some(0));
+        assert_eq!([0, 29, 30, 99, 100, 299, 300, 2_000].map(score), [0, 0, 1, 1, 3, 3, 5, 5]);
         assert_eq!(skin.score(&felt(None, &pressed)), Some(3 * ELEMENTS as u16));
         assert_eq!(skin.score(&felt(None, &none)), None);
     }

@@ -6,19 +6,17 @@ use tenax_hal_shim::motor::Duty;
 use super::{BehaviourConfig, Course, Felt, Movement, Skin, Wish};
 use crate::grip::Grip;
 
-/// The fingers close until the skin's score is half of what is enough, which its noise does not reach, and from there on by small
-/// movements with a wait after each: a fragile object gives way before a camera's next picture.
+/// Closes until half of the needed score, which noise does not reach, then by small movements with a wait
+/// after each: a fragile object gives way before a camera's next picture.
 #[derive(Clone, Debug)]
 pub struct GentleGrasp {
     skin: Option<Skin>,
-    /// When the skin was last looked at.
     score: u16,
     touched: bool,
     movement: Movement,
 }
 
 impl GentleGrasp {
-    /// Begins a gentle grasp. None without a skin and without a force sensor.
     pub fn begin(felt: &Felt<'_>) -> Option<Self> {
         let skin = Skin::now(felt);
         (skin.is_some() || felt.grip != Grip::Unknown).then_some(Self {
@@ -36,7 +34,6 @@ impl GentleGrasp {
                 Some(score) => score,
                 None => return Course::Ends(Ending::SensorLost),
             },
-            // The force sensor alone knows two states.
             None => match felt.grip {
                 Grip::Unknown => return Course::Ends(Ending::SensorLost),
                 Grip::Unloaded => 0,

@@ -1,7 +1,5 @@
-//! Hand-over: let go as soon as the object is pulled (FingerVision 2017, section II-C).
-//!
-//! A broken sensor must not let go of anything: slip, of a detector or the camera, counts only if the skin feels
-//! another force, too, and a skin without valid readings ends the hand-over with the fingers as they are.
+//! Hand-over: opens when the object is pulled (FingerVision 2017, section II-C). Slip counts only with a
+//! changed force on the skin, so that a broken sensor lets go of nothing.
 
 use tenax_hal_shim::behaviour::Ending;
 use tenax_hal_shim::motor::Duty;
@@ -10,19 +8,16 @@ use super::{BehaviourConfig, Course, Felt, Skin, Wish};
 use crate::grip::Grip;
 use tenax_hal_shim::channel::frames;
 
-/// How long the hand opens, in frames: at full speed, some centimetres.
+/// At full speed, some centimetres.
 const OPEN_FRAMES: u32 = frames(400);
-/// A force that is another one must be so for this long, in frames: three pictures, or four readings of the taxels. An impact is
-/// shorter.
+/// Least duration of a pull: three pictures, or four readings of the taxels. An impact is shorter.
 const STAYS_FRAMES: u32 = frames(50);
-/// Time after the begin in which changes do not count as a pull, frames.
+/// Time after the begin in which changes do not count as a pull.
 const BEGINS_FRAMES: u32 = frames(200);
 
-/// Waits for a pull, then opens.
 #[derive(Clone, Debug)]
 pub struct HandOver {
     skin: Skin,
-    /// Cells that feel another force, when they were last looked at.
     changed: u16,
     pulled: bool,
     waited: u32,
@@ -32,7 +27,6 @@ pub struct HandOver {
 }
 
 impl HandOver {
-    /// Begins a hand-over. None without a skin or without a known force.
     pub fn begin(felt: &Felt<'_>) -> Option<Self> {
         if felt.grip == Grip::Unknown {
             return None;

@@ -1,11 +1,6 @@
-//! Holding: close a little whenever the object slips (FingerVision 2017, section II-B).
-//!
-//! The reflex answers the detectors already. This adds slip that only a camera sees, of an object too light for
-//! vibration and force sensors; and without a camera, slip at a load below which the reflex rests.
-//!
-//! A camera is wrong in some pictures, several in a row. No object slides on skin that is hardly sheared, so motion is no slip while
-//! the markers' shear is less than a tenth of their normal force: rubber has several times that friction. Motion that
-//! continues however far the fingers close is no slip either, but a fault of the camera.
+//! Holding: closes a little whenever the object slips (FingerVision 2017, section II-B), for slip that only a
+//! camera sees or at a load below which the reflex rests. Motion without shear, or however far the fingers
+//! close, is a fault of the camera.
 
 use super::felt::skin_mn;
 use super::{BehaviourConfig, Course, Felt, Movement, Wish};
@@ -13,32 +8,25 @@ use crate::grip::Grip;
 use tenax_hal_shim::channel::frames;
 use tenax_hal_shim::motor::Duty;
 
-/// Longest closing for one slip, frames.
+/// Longest closing for one slip.
 const ANSWER_FRAMES_MAX: u32 = frames(500);
-/// Frames of closing after which the fingers close faster by their first speed, up to [`FASTEST`] times, while the object
-/// surely slides.
 const FASTER_FRAMES: u32 = frames(60);
 const FASTEST: u32 = 3;
-/// A slip is over when nothing has slipped for this long, in frames.
+/// Time without slip that ends a slip.
 const STILL_FRAMES: u32 = frames(200);
 
-/// With less shear than this part of the markers' normal force, the object sticks: over the last pictures, and in a single one, whose markers are less sure.
 const STICKS: [[i32; 2]; 2] = [[1, 10], [1, 3]];
-/// With more than this it surely slides, if it moves.
 const SLIDES: [i32; 2] = [1, 2];
-/// The markers' sums follow their last pictures by this power of two.
 const SUMS_RATE: u32 = 2;
 
-/// Small movements, one after the other while the object slips.
 #[derive(Clone, Debug, Default)]
 pub struct Hold {
     movement: Movement,
-    /// Sums over all markers of normal force and shear, 1/16 mN.
+    /// Normal force and shear, 1/16 mN.
     sums_q4: [i32; 2],
-    /// Whether the shear is enough for sliding, and whether the object surely slides.
     may_slide: bool,
     slides: bool,
-    /// Frames of closing since nothing slipped last, times how much faster than usual.
+    /// Frames of closing in this slip, times how much faster than usual.
     answered: u32,
     still: u32,
 }

@@ -4,7 +4,6 @@ use tenax_hal_shim::motor::Duty;
 
 use super::{BehaviourConfig, Wish};
 
-/// A movement that goes on, and the wait after it.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Movement {
     wish: Wish,
@@ -13,32 +12,26 @@ pub struct Movement {
 }
 
 impl Movement {
-    /// A small movement that closes the hand.
     pub const fn tighten(config: &BehaviourConfig) -> Self {
         Self::lasting(config, Wish::Tighten(Duty::per_mille(config.duty_permille)), config.movement_frames)
     }
 
-    /// A small movement that opens the hand.
     pub const fn relax(config: &BehaviourConfig) -> Self {
         Self::lasting(config, Wish::Relax(Duty::per_mille(config.duty_permille)), config.movement_frames)
     }
 
-    /// A movement with this wish that lasts for this number of frames.
     pub const fn lasting(config: &BehaviourConfig, wish: Wish, frames: u32) -> Self {
         Self { wish, drives_left: frames, waits_left: config.wait_frames }
     }
 
-    /// Whether the movement and the wait after it are over.
     pub const fn is_over(&self) -> bool {
         self.drives_left == 0 && self.waits_left == 0
     }
 
-    /// Whether the movement still drives the hand.
     pub const fn drives(&self) -> bool {
         self.drives_left > 0
     }
 
-    /// Advances by one tick. Returns the wish; `Rest` during the wait.
     pub const fn step(&mut self) -> Wish {
         if self.drives_left > 0 {
             self.drives_left -= 1;

@@ -2,22 +2,14 @@
 
 use crate::setting::settings;
 
-/// Settings of the behaviours.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct BehaviourConfig {
-    /// Duty of its movements, per mille.
     pub duty_permille: u16,
-    /// Length of a small movement, in frames.
     pub movement_frames: u32,
-    /// Pause after a small movement, in frames (section II-D: 0.1 s).
     pub wait_frames: u32,
-    /// The sum of the scores beyond which an object is held gently (section II-A).
     pub gentle_score: u16,
-    /// So many cells of the skin must feel another force for a hand-over (section II-C).
     pub changed_cells: u16,
-    /// Moving points that are slip, in 1/10,000 of the picture.
     pub moving_e4: u16,
-    /// Time by which the camera's angle is extrapolated, in frames; 0: not at all, as in the paper.
     pub turn_lead_frames: u32,
 }
 

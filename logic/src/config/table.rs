@@ -7,7 +7,6 @@ use tenax_hal_shim::wire::SETTINGS_MAX;
 use super::TABLES;
 use crate::setting::{Row, SettingId};
 
-/// How many settings there are.
 const COUNT: usize = {
     let (mut count, mut table) = (0, 0);
     while table < TABLES.len() {
@@ -16,10 +15,9 @@ const COUNT: usize = {
     }
     count
 };
-// A missing place is found here, at compile time, and not when the board starts.
+// Checked at compile time, not when the board starts.
 const _: () = assert!(COUNT <= SETTINGS_MAX);
 
-/// Every row, in the order of the numbers.
 static ROWS: [Row; COUNT] = {
     let mut rows = [TABLES[0][0]; COUNT];
     let (mut count, mut table) = (0, 0);
@@ -41,17 +39,7 @@ static ROWS: [Row; COUNT] = {
     rows
 };
 
-/// Names that settings had before and that scene files may still use.
-const BEFORE: [(&str, SettingId); 5] = [
-    ("knock-level-mv", SettingId::ImpactLevel),
-    ("knock-ratio-permille", SettingId::ImpactRatio),
-    ("knock-ms", SettingId::ImpactLength),
-    ("network-slip-permille", SettingId::HebbianSlip),
-    ("myo-on-mv", SettingId::EmgOn),
-];
-
 impl SettingId {
-    /// Every setting, in the order of their numbers.
     pub const ALL: [Self; COUNT] = {
         let mut all = [ROWS[0].id; COUNT];
         let mut n = 0;
@@ -62,21 +50,16 @@ impl SettingId {
         all
     };
 
-    /// The setting with this number. None: there is no such setting.
     pub fn from_number(number: u8) -> Option<Self> {
         Self::ALL.into_iter().find(|id| id.number() == number)
     }
 
-    /// The setting with this name, or with one that it had before.
     pub fn by_name(name: &str) -> Option<Self> {
-        let mut all = ROWS.iter().map(|row| (row.name, row.id)).chain(BEFORE);
-        all.find(|(own, _)| *own == name).map(|(_, id)| id)
+        ROWS.iter().find(|row| row.name == name).map(|row| row.id)
     }
 
-    /// Its row.
-    #[must_use]
     pub fn row(self) -> &'static Row {
-        // Only rows give numbers, so one is found; the first stands in for what cannot be.
+        // Every number has a row; the first stands in, so that nothing can panic.
         ROWS.iter().find(|row| row.id == self).unwrap_or(&ROWS[0])
     }
 }
@@ -100,24 +83,11 @@ mod tests {
             let row = id.row();
             assert!(names.insert(row.name), "{}", row.name);
             assert!(row.range().contains(&row.default) && row.min < row.max, "{}", row.name);
-            assert!(row.min_if_trusted <= row.min && row.max <= row.max_if_trusted, "{}", row.name);
-            assert!(
-                row.min_if_trusted >= 0 && row.max_if_trusted < 1 << 24,
-                "{}: a record keeps 24 bits of it",
-                row.name
-            );
-            assert_eq!(SettingId::from_number(id.number()), Some(id));
-            assert_eq!(SettingId::by_name(row.name), Some(id));
-            assert!(id.number() != 0, "0 marks a record of the first format");
-        }
-    }
-
-    #[test]
-    fn names_end_with_their_unit() {
-        for id in SettingId::ALL {
-            let row = id.row();
             let unit = row.unit.replace(' ', "").to_lowercase();
             assert!(row.name.ends_with(&std::format!("-{unit}")), "{} in {}", row.name, row.unit);
+            assert!(row.min >= 0 && row.max < 1 << 24, "{}: a record keeps 24 bits of it", row.name);
+            assert_eq!(SettingId::from_number(id.number()), Some(id));
+            assert_eq!(SettingId::by_name(row.name), Some(id));
         }
     }
 
@@ -136,16 +106,6 @@ mod tests {
                 }
             }
         }
-    }
-
-    #[test]
-    fn a_trusted_line_may_silence_a_detector_until_it_is_trusted_no_more() {
-        let mut config = Config { line_trusted: true, ..Config::default() };
-        assert_eq!(config.set(SettingId::S1, 1_500), Ok(()));
-        assert_eq!(config.set(SettingId::S2, 800), Ok(()));
-        assert_eq!(config.set(SettingId::LineTrusted, 0), Ok(()));
-        assert_eq!((config.get(SettingId::S1), config.get(SettingId::S2)), (150, 310));
-        assert_eq!(config.set(SettingId::S1, 1_500), Err(30..=150));
     }
 
     #[test]

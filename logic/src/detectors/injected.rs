@@ -4,12 +4,10 @@ use tenax_hal_shim::detector::{DetectorHealth, DetectorId, Direction};
 
 use super::{Description, Detector, Said, Sensed};
 
-/// The report that was injected for the next frame.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Injected(Option<Said>);
 
 impl Injected {
-    /// Sets the report from the next frame on.
     pub const fn inject(&mut self, said: Said) {
         self.0 = Some(said);
     }

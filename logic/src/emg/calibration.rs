@@ -1,50 +1,44 @@
-//! The guided calibration: the wearer rests, closes, opens, five seconds each, and the firmware learns where the three
-//! lie. Time arrives as the frame's number.
+//! Guided calibration: the wearer rests, closes and opens, five seconds each.
 
 use tenax_hal_shim::channel::FRAME_HZ;
 
-/// What the wearer is asked to do.
 pub use tenax_hal_shim::words::Prompt;
 
 use super::level::level_of;
 use super::model::{EmgModel, Point, Refusal, octaves};
 use super::trust::TOP_UV;
 
-/// Duration of each prompt, frames.
 pub const PROMPT_FRAMES: u32 = 5 * FRAME_HZ;
-/// The part of a prompt that does not count, for the wearer's reaction, frames.
+/// Start of a prompt that does not count, for the wearer's reaction.
 const REACTION_FRAMES: u32 = 7 * FRAME_HZ / 10;
-/// Readings without a number that a phase may have, per mille.
+/// Share of readings without a number that a phase may have, per mille.
 const MISSING_PERMILLE: u32 = 50;
-/// Readings at the top of the range that a phase may have, per mille: a short overshoot.
+/// Share of readings at the top of the range that a phase may have, per mille: a short overshoot.
 const TOP_PERMILLE: u32 = 100;
-/// The part of a phase in which the contraction must stand out, per mille.
+/// Share of a phase in which the contraction must stand out, per mille.
 const HELD_PERMILLE: u32 = 600;
-/// How far a reading of a contraction stands out from rest at least, on one electrode.
+/// Least rise of a contraction above rest, on one electrode.
 const STANDS_OUT: i32 = octaves(500);
-/// Standard deviation below which an envelope cannot be a muscle's, 1 %. The steadiest recorded contraction has 6 %.
+/// Standard deviation below which an envelope cannot be a muscle's, 1 %. The steadiest recorded contraction
+/// has 6 %.
 const STILL: i32 = octaves(15);
 
-/// Progress of a calibration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Progress {
-    /// The wearer must follow this prompt for so many more frames.
+    /// The prompt, and for how many more frames.
     Asks(Prompt, u32),
-    /// The calibration is over, with this result.
     Done(Result<EmgModel, Refusal>),
 }
 
-/// Sums over the readings of one prompt.
 #[derive(Clone, Copy, Debug, Default)]
 struct Phase {
-    /// Number of readings: all, without a number, at the top of the range, summed.
+    /// Counts of readings: all, without a number, at the top of the range, summed.
     readings: u32,
     missing: u32,
     top: u32,
     summed: u32,
     sum: Point,
     squares: [i64; 2],
-    /// Sum of squares of extensor minus flexor.
     squares_of_difference: i64,
 }
 
@@ -75,17 +69,15 @@ impl Phase {
         self.sum.map(|sum| (i64::from(sum) / count) as i32)
     }
 
-    /// Variance about the mean, Q20.
+    /// Q20.
     fn variance(&self, n: usize) -> i64 {
         variance(self.squares[n], i64::from(self.sum[n]), self.summed)
     }
 
-    /// The same of the difference of both levels.
     fn variance_of_difference(&self) -> i64 {
         variance(self.squares_of_difference, i64::from(self.sum[1] - self.sum[0]), self.summed)
     }
 
-    /// Whether so many of its readings, per mille, are `part`.
     fn has(&self, part: u32, permille: u32) -> bool {
         part * 1_000 > self.readings * permille
     }
@@ -110,13 +102,12 @@ fn root(square: i64) -> i32 {
     square.max(0).unsigned_abs().isqrt() as i32
 }
 
-/// A distance over the common standard deviation of both ends, per mille.
+/// Distance over the common standard deviation of both ends, per mille.
 fn separation(distance: i32, variances: [i64; 2]) -> i32 {
     let deviation = root((variances[0] + variances[1]) / 2).max(1);
     ((i64::from(distance.abs()) * 1_000) / i64::from(deviation)).min(1_000_000) as i32
 }
 
-/// A calibration under way.
 #[derive(Clone, Debug)]
 pub struct Calibration {
     began: u32,
@@ -125,13 +116,12 @@ pub struct Calibration {
 }
 
 impl Calibration {
-    /// Begins with the first prompt at this frame.
     pub fn begin(frame: u32) -> Self {
         Self { began: frame, phases: [Phase::default(); 3], over: None }
     }
 
-    /// Takes both envelopes above the live zero, uV, flexor first, none where a sensor gives no number. Once for each
-    /// pair of readings; a few hundred instructions, and some thousand once, at the end.
+    /// Envelopes above the live zero, uV, flexor first; None where a sensor gives no number. Once for each
+    /// pair of readings.
     pub fn take(&mut self, frame: u32, uv: [Option<i32>; 2]) -> Progress {
         if let Some(result) = self.over {
             return Progress::Done(result);
@@ -157,8 +147,7 @@ impl Calibration {
         Progress::Asks(prompt, PROMPT_FRAMES - within)
     }
 
-    /// Whether the last prompt is over: what is taken next concludes, which is better done outside the tick.
-    #[must_use]
+    /// The next call concludes, with some thousand instructions: outside the tick.
     pub const fn is_over(&self, frame: u32) -> bool {
         frame.wrapping_sub(self.began) >= 3 * PROMPT_FRAMES
     }
@@ -175,7 +164,7 @@ impl Calibration {
             return Err(Refusal::NoOpening);
         }
         let spread = [root(rest.variance(0)), root(rest.variance(1))];
-        // First whether it could be a model at all, with a reason of its own, then how well it separates.
+        // First a reason for what is no model at all, then the separation.
         let least = super::model::LEAST_SEPARATION_PERMILLE;
         let model = EmgModel::new(rest.mean(), close.mean(), open.mean(), spread, least)?;
         let (closes, opens) = (model.closing_site(), model.opening_site());

@@ -1,57 +1,56 @@
 //! The constants of the wearer's model: their meaning here, their values in [`fitted`](super::fitted).
 
-/// The constants with which the board recognises the wearer's wish. Shares and places are per mille of what was
-/// calibrated, levels are Q10 octaves, times are slow frames, 80 a second.
+/// Shares and places are per mille of what was calibrated, levels Q10 octaves, times slow frames (80 a
+/// second). Pairs are closing and opening.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fitted {
     /// Slow frames over which shares and ratio are averaged.
     pub mean_frames: i32,
-    /// Share of the calibrated rise from which closing and opening begin.
+    /// Share of the calibrated rise from which a wish begins.
     pub begins: [i32; 2],
-    /// Share below which closing and opening end.
+    /// Share below which a wish ends.
     pub ends: [i32; 2],
-    /// A wish ends at least this far below where it begins.
+    /// Least distance of a wish's end below its begin.
     pub hysteresis: i32,
     /// Lowest share at which a wish ends.
     pub least_end: i32,
-    /// A wish also ends this share below its highest one: a muscle that relaxes slowly has let go.
+    /// Fall from the highest share that ends a wish: a muscle that relaxes slowly has let go.
     pub fall: i32,
-    /// Smallest fall of the level that ends a wish: a contraction fluctuates.
+    /// Least fall of the level that ends a wish: a contraction fluctuates.
     pub least_fall: i32,
-    /// Time constant with which the highest share is forgotten, slow frames.
+    /// Time constant with which the highest share is forgotten.
     pub crest_frames: i32,
-    /// A wish begins again this share above the lowest one since: tone that stays is no new wish.
+    /// Rise above the lowest share since, from which a wish begins again: tone that stays is no new wish.
     pub rise: i32,
-    /// A wish begins at least this level above rest.
+    /// Least level above rest from which a wish begins.
     pub least_rise: i32,
-    /// A wish begins at least so many standard deviations of rest above rest.
+    /// Least standard deviations of rest above rest from which a wish begins.
     pub least_spreads: i32,
-    /// Place of the electrodes' ratio between calibrated closing (0) and opening (1000): closing begins below, opening above.
+    /// Place of the electrodes' ratio, closing at 0, opening at 1000: closing begins below, opening above.
     pub place_begins: i32,
-    /// Closing goes on below, opening above.
+    /// Place below which closing goes on, and above which opening does.
     pub place_stays: [i32; 2],
-    /// Slow frames for which rest, closing and opening must last before they are a wish.
+    /// Duration after which rest, closing and opening count.
     pub dwell: [i32; 3],
-    /// Time constant with which the level of rest is followed, slow frames.
+    /// Time constant with which the level of rest is followed.
     pub rest_frames: i32,
-    /// After a contraction the opposite muscle often contracts weakly for a while. So after other activity no opening begins for
-    /// the first number of slow frames, and only a strong one for the second.
+    /// Time after other activity in which no opening begins, and in which only a strong one does: the
+    /// opposite muscle often contracts weakly after a contraction.
     pub after_frames: [i32; 2],
-    /// For which closing stands as soon after opening.
+    /// Duration after which closing counts soon after opening.
     pub after_dwell: i32,
     /// Level above the calibrated opening from which nothing is a relaxing muscle.
     pub firmer: i32,
-    /// Both muscles contract when the other site has a share above what calibration found beside the contraction, and this.
+    /// Share of the other site, above what calibration found beside the contraction, from which both
+    /// contract.
     pub both: i32,
     /// Share of either site that is activity.
     pub busy: i32,
 }
 
 impl Fitted {
-    /// Number of constants.
     pub const COUNT: usize = 26;
 
-    /// Each of them, in the order of the fields: for who fits them.
     pub fn all_mut(&mut self) -> [&mut i32; Self::COUNT] {
         let Self { mean_frames, begins, ends, hysteresis, least_end, fall, least_fall, .. } = self;
         let Self { crest_frames, rise, least_rise, least_spreads, place_begins, place_stays, .. } = self;

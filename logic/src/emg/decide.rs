@@ -1,17 +1,13 @@
-//! What the wearer wants: rest, close or open, from both envelopes.
-//!
-//! Three numbers a slow frame: each site's *share* of the rise that calibration found there, and the *place* of the electrodes'
-//! ratio between calibrated closing and opening; averaged over 0.13 s. The place says which way, the share of that way's site
-//! says whether; both with hysteresis and dwell. A wish ends when its site falls from its own crest, and begins by a rise, so
-//! that tone is none. Rest is followed while nothing is wished: what has been added to it (hum, tone) is subtracted.
-//! A slow frame above all that was calibrated opens at once: what it may move before it is proven is the gate's business.
+//! The wearer's wish from both envelopes: rest, close or open. The *share* of a site's calibrated rise says
+//! whether, the *place* of the electrodes' ratio between calibrated closing and opening says which way; both
+//! averaged over 0.13 s, with hysteresis and dwell. Hum and tone that are added to rest are subtracted.
 
 use super::constants::Fitted;
 use super::fitted::FITTED;
 use super::level::{FLOOR_LEVEL, level_of, uv_of};
 use super::model::EmgModel;
 
-/// An envelope above this is out of the sensor's range, uV: it starts no motion, but a motion that it started goes on.
+/// Top of the sensor's range, uV: above, no motion starts, but one that has started goes on.
 pub const OVER_UV: i32 = 2_950_000;
 /// Share of opening that opens even if a sensor is doubted, per mille.
 const STRONG: i32 = 1_000;
@@ -19,55 +15,49 @@ const STRONG: i32 = 1_000;
 const ALONE: i32 = 900;
 /// Slow frames without a wish after which rest is followed.
 const CALM_FRAMES: u16 = 40;
-/// Slow frames over which what stands still is subtracted: 0.3 s.
+/// Time constant with which constant hum is subtracted, slow frames: 0.3 s.
 const HUM_FRAMES: i32 = 21;
-/// The most that is subtracted as hum or tone, uV.
+/// Limit of the subtracted hum or tone, uV.
 const MOST_DRIFT_UV: i32 = 1_500_000;
-/// Share from which a muscle is active, and below which it no longer is, per mille; [`ACTIVE_UV`] limits both levels.
+/// Shares at which a muscle becomes active and ceases to be, per mille; [`ACTIVE_UV`] limits both levels.
 const ACTIVE: [i32; 2] = [350, 250];
 const ACTIVE_UV: [i32; 2] = [159_000, 112_000];
-/// Contractions that the other electrode hears by less than this, Q10 octaves, are proven by their own electrode alone. It has
-/// heard one when it rises by so many standard deviations of its rest, and by no more than half of what calibration found.
+/// Least rise of the other electrode that can prove a contraction, Q10 octaves, and the needed rise in
+/// standard deviations of its rest.
 const HEARS_AT_ALL: i32 = 300;
 const HEARS_SPREADS: i32 = 1;
-/// Without calibration: where closing and opening begin, and how far the other electrode is below.
+/// Without calibration: envelopes from which closing and opening begin, uV; least distance of the other
+/// electrode, Q10 octaves; duration, slow frames.
 const DEFAULT_BEGINS_UV: [i32; 2] = [600_000, 1_500_000];
 const DEFAULT_OVER: [i32; 2] = [1_322, 2_900];
 const DEFAULT_FRAMES: i32 = 24;
 /// Without calibration: least rise of the other electrode, Q10 octaves.
 const DEFAULT_HEARS: i32 = 256;
 
-/// The wearer's wish.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Wish {
-    /// Rest, or no clear wish.
     #[default]
     Rest,
-    /// Close the hand.
     Close,
-    /// Open the hand.
     Open,
 }
 
-/// One electrode in a slow frame.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Electrode {
     /// Mean envelope above the live zero, uV, [`OVER_UV`] at most; None: no valid reading.
     pub uv: Option<i32>,
-    /// Whether a reading was above [`OVER_UV`].
+    /// A reading was above [`OVER_UV`].
     pub over: bool,
-    /// Whether the electrode is doubted: it then blocks nothing, and starts only a strong wish.
+    /// Blocks nothing, and starts only a strong wish.
     pub doubted: bool,
-    /// Whether the envelope has been constant for a while.
     pub still: bool,
-    /// Whether it has been constant for so long that its level is taken for hum.
+    /// Constant for so long that its level counts as hum.
     pub hums: bool,
 }
 
-/// A wearer's levels by site: 0 closes, 1 opens.
+/// Levels by site: 0 closes, 1 opens.
 #[derive(Clone, Copy, Debug)]
 struct Sites {
-    /// Electrode of each.
     electrode: [usize; 2],
     rest: [i32; 2],
     rest_uv: [i32; 2],
@@ -75,9 +65,8 @@ struct Sites {
     span: [i32; 2],
     begins: [i32; 2],
     ends: [i32; 2],
-    /// Fall from the highest share that ends a wish.
     fall: [i32; 2],
-    /// Share of the other site with each wish from which both contract: that asks for nothing.
+    /// Share of the other site from which both contract, which is no wish.
     both: [i32; 2],
     /// Least rise of the other electrode with each wish; None if its signal is too small.
     hears: [Option<i32>; 2],
@@ -120,7 +109,6 @@ impl Sites {
             }),
             close_ratio: close[1] - close[0],
             turn: ((open[1] - open[0]) - (close[1] - close[0])).max(256),
-            // The least envelope of each level.
             active_uv: [0, 1].map(|n: usize| {
                 [0, 1].map(|k: usize| uv_of(active[k][n].max(rest[n] + [300, 200][k]) - 1) + 1)
             }),
@@ -128,60 +116,54 @@ impl Sites {
     }
 }
 
-/// From slow frames of EMG envelopes to the wearer's wish: rest, close or open.
 #[derive(Clone, Debug)]
 pub struct Decide {
     sites: Option<Sites>,
     machine: Machine,
 }
 
-/// Its state machine.
 #[derive(Clone, Debug)]
 struct Machine {
     fitted: &'static Fitted,
     wish: Wish,
-    /// The wish of the last slow frames, and for how many of them.
     next: Wish,
     stands: i32,
     /// Slow frames since activity that is no opening, and since opening.
     since: [i32; 2],
     calm: u16,
-    /// Shares of both sites and the place, averaged, Q4.
+    /// Shares of both sites and the place, Q4.
     mean: [i32; 3],
     crest: i32,
     trough: [i32; 2],
-    /// Offset that is added to rest, uV, Q8.
+    /// Offset of rest, uV, Q8.
     drift: [i32; 2],
 }
 
 impl Decide {
-    /// A decision for this calibrated wearer; None: not calibrated.
     pub fn new(model: Option<&EmgModel>) -> Self {
         Self::with(&FITTED, model)
     }
 
-    /// A decision with other constants than [`FITTED`], to fit them.
     pub fn with(fitted: &'static Fitted, model: Option<&EmgModel>) -> Self {
         Self { sites: model.map(|model| Sites::of(fitted, model)), machine: Machine::new(fitted) }
     }
 
-    /// Envelopes, uV, from which electrode 0 (flexor) or 1 (extensor) is active, and below which it is no more.
-    #[must_use]
+    /// Envelopes, uV, at which electrode 0 (flexor) or 1 (extensor) becomes active and ceases to be.
     pub fn active_uv(&self, electrode: usize) -> [i32; 2] {
         self.sites
             .as_ref()
             .map_or(ACTIVE_UV, |sites| sites.active_uv[usize::from(sites.electrode[1] == electrode)])
     }
 
-    /// Returns the electrode that contracts for the present wish, 0 (flexor) or 1 (extensor); at rest, the opening one.
+    /// Electrode of the present wish, 0 (flexor) or 1 (extensor); at rest, the opening one.
     pub fn mover(&self) -> usize {
         let site = self.machine.site();
-        // The compiler is to see that it is one of two, here and below.
+        // `& 1` lets the compiler drop the bounds check, here and below.
         self.sites.as_ref().map_or(site, |sites| sites.electrode[site]) & 1
     }
 
-    /// Returns, for the electrode that is not the [`mover`](Self::mover), its rest level and the least rise that the
-    /// present wish must show on it, Q10 octaves. None for a wearer whose contractions hardly raise that electrode.
+    /// Rest level of the electrode beside the [`mover`](Self::mover) and its least rise, Q10 octaves. None if
+    /// the wearer's contractions hardly raise it.
     pub fn hears(&self) -> Option<[i32; 2]> {
         let site = self.machine.site();
         match &self.sites {
@@ -190,12 +172,10 @@ impl Decide {
         }
     }
 
-    /// Strength of the last wish, 0 to 1000 per mille: for the speed.
     pub fn strength_permille(&self) -> u16 {
         self.machine.strength_permille()
     }
 
-    /// Takes both electrodes of a slow frame, flexor first. Gives the wearer's wish.
     pub fn take(&mut self, electrodes: &[Electrode; 2]) -> Wish {
         match &self.sites {
             Some(sites) => self.machine.calibrated(sites, sites.electrode.map(|n| electrodes[n & 1])),
@@ -221,7 +201,6 @@ impl Machine {
         }
     }
 
-    /// The site of the present wish; at rest, the opening one.
     fn site(&self) -> usize {
         usize::from(self.wish != Wish::Close)
     }
@@ -238,8 +217,7 @@ impl Machine {
     fn calibrated(&mut self, sites: &Sites, electrodes: [Electrode; 2]) {
         let f = self.fitted;
         let over = electrodes[1].over;
-        // The least of spans and turn is far above 1, which the compiler is to see.
-        // What gives no number stands at rest; what that means for the other is decided below.
+        // `max(1)`, far below any span or turn, rules a division by zero out.
         let level = [0, 1].map(|n: usize| {
             let subtracted = electrodes[n].uv.map(|uv| uv - (self.drift[n] >> 8));
             subtracted.map_or(sites.rest[n], level_of)
@@ -252,7 +230,7 @@ impl Machine {
         }
         let blind = electrodes.map(|electrode| electrode.uv.is_none() || electrode.doubted);
         let wish = self.wanted(sites, blind, over);
-        // A doubted closing electrode says nothing about the ratio. Soon after other activity it takes more.
+        // A doubted closing electrode says nothing about the ratio.
         let lately = !blind[0] && self.since[0] < f.after_frames[0];
         let strong = level[1] - sites.rest[1] - sites.span[1] >= if lately { f.firmer } else { 0 };
         let alone = share[0] < sites.both[1] + f.both || electrodes[0].still;
@@ -265,7 +243,6 @@ impl Machine {
         self.follow(sites, electrodes, wish);
     }
 
-    /// The wish by the averaged shares and place.
     fn wanted(&mut self, sites: &Sites, blind: [bool; 2], over: bool) -> Wish {
         let f = self.fitted;
         let [closes, opens, place] = self.mean.map(|mean| mean / 16);
@@ -317,7 +294,6 @@ impl Machine {
         }
     }
 
-    /// A wish has to stand for a while, soon after the opposite one for longer.
     fn settle(&mut self, wish: Wish) {
         let f = self.fitted;
         let dwell = match wish {
@@ -333,7 +309,6 @@ impl Machine {
         }
     }
 
-    /// Follows rest while nothing is wished. What stands still is hum, whatever its level.
     fn follow(&mut self, sites: &Sites, electrodes: [Electrode; 2], wish: Wish) {
         let f = self.fitted;
         let calm = self.wish == Wish::Rest
@@ -348,7 +323,6 @@ impl Machine {
         }
     }
 
-    /// Only what nobody can mistake, and only if it lasts. Opening does not need the flexor.
     fn uncalibrated(&mut self, electrodes: &[Electrode; 2]) {
         let level = electrodes.map(|electrode| electrode.uv.map(level_of));
         let is_over = electrodes[1].over;

@@ -1,9 +1,6 @@
-//! Whether contractions still fit the calibration. It only reports, and never changes who moves the hand.
-//!
-//! Each contraction gives two numbers. Its *turn*: the distance of its mean levels from the nearest calibrated contraction, less the
-//! distance from the nearest one with the electrodes exchanged. With an electrode that sits where it sat, the turn is far below zero;
-//! with exchanged plugs it is as far above; where both contractions drive the electrodes alike it is about zero. And whether it
-//! was *answered*: whether the hand took it for a wish. The sums over twelve contractions decide whether to ask for a calibration.
+//! Whether contractions still fit the calibration, over twelve of them. It only reports. A contraction's
+//! *turn* is far below zero with electrodes in place, as far above with exchanged plugs, and about zero if
+//! both electrodes are driven alike; it is *answered* if the hand took it for a wish.
 
 use tenax_hal_shim::words::Fit;
 
@@ -11,34 +8,30 @@ use super::Verdict;
 use super::decide::Wish;
 use super::model::{EmgModel, Point};
 
-/// Slow frames of rest that end a contraction, 0.1 s, the fewest that one has, 0.5 s, and the most, 60 s.
+/// Slow frames: of rest that ends a contraction, and of the shortest and the longest contraction.
 const OVER_FRAMES: u8 = 8;
 const LEAST_FRAMES: u32 = 40;
 const MOST_FRAMES: u16 = 4_800;
-/// A contraction is answered if at least this part of its slow frames is a wish: 2/5.
+/// Part of a contraction's slow frames that must be a wish, or it is unanswered.
 const ANSWERED: [u32; 2] = [2, 5];
-/// Contractions that are judged together.
 pub const CONTRACTIONS: u8 = 12;
-/// So many of them unanswered, or their turns less than an eighth of the calibrated ones': the electrodes have moved.
+/// Unanswered contractions, or turns less than an eighth of the calibrated ones', that show moved electrodes.
 const UNANSWERED: u8 = 3;
 const MOVED: [i32; 2] = [1, 8];
-/// Turns the other way of more than a third of the calibrated ones': they are exchanged.
+/// Turns the other way of more than a third of the calibrated ones' show exchanged electrodes.
 const EXCHANGED: [i32; 2] = [1, 3];
-/// The most that one contraction turns, and the least that calibrated ones do on average, Q10 octaves, for turns to say anything: two
-/// muscles that are each other's mirror turn little.
+/// Limit of one contraction's turn, and the least mean of calibrated turns that tells anything, Q10 octaves:
+/// two muscles that mirror each other turn little.
 const MOST: i32 = 2_048;
 const LEAST: i32 = 512;
 
-/// Sums over the contractions since the last decision.
 #[derive(Clone, Debug, Default)]
 pub struct Watch {
-    /// The present contraction: sums of levels, number of slow frames, and of those with a wish.
+    /// Present contraction: sums of levels, slow frames, and those of them with a wish.
     sums: Point,
     frames: u16,
     wished: u16,
-    /// Slow frames of rest since.
     rest: u8,
-    /// Of the contractions so far.
     count: u8,
     unanswered: u8,
     fit: Fit,
@@ -46,12 +39,11 @@ pub struct Watch {
 }
 
 impl Watch {
-    /// Takes the levels (Q10 octaves) and the verdict of each slow frame. True if this frame completes twelve contractions and
-    /// a decision.
+    /// One slow frame, levels in Q10 octaves. True if it completes twelve contractions and a decision.
     #[inline(never)]
     pub fn take(&mut self, model: &EmgModel, levels: Point, verdict: Verdict) -> bool {
         if !verdict.known || self.frames >= MOST_FRAMES {
-            // Of a fault nothing is learned.
+            // A fault teaches nothing.
             self.frames = 0;
             return false;
         }
@@ -81,7 +73,6 @@ impl Watch {
         }
         let (turns, unanswered) = (self.turns, self.unanswered);
         (self.count, self.turns, self.unanswered) = (0, 0, 0);
-        // Below zero, of two contractions.
         let calibrated = turn(model, model.close()) + turn(model, model.open());
         let beyond = |[part, of]: [i32; 2]| calibrated * (i32::from(CONTRACTIONS) / 2) * part / of;
         let tells = calibrated <= -2 * LEAST;
@@ -95,13 +86,12 @@ impl Watch {
         true
     }
 
-    /// The last judgement.
     pub const fn fit(&self) -> Fit {
         self.fit
     }
 }
 
-/// How much nearer a contraction's levels are to a calibrated one with the electrodes exchanged than to one as it was calibrated.
+/// Distance from the nearest calibrated contraction less that with the electrodes exchanged, Q10 octaves.
 fn turn(model: &EmgModel, [flexor, extensor]: Point) -> i32 {
     let nearest = |flexor: i32, extensor: i32| {
         let far = |[f, e]: Point| (f - flexor).abs() + (e - extensor).abs();
@@ -119,12 +109,6 @@ mod tests {
 
     const CLOSE: [f64; 2] = [450.0, 165.0];
     const OPEN: [f64; 2] = [150.0, 1_400.0];
-
-    /// What is said while somebody who was calibrated with the levels above makes contractions of 2 s at these levels, mV, in turn, and
-    /// after which of them.
-    fn told(contractions: &[[f64; 2]], count: usize) -> Vec<(usize, Fit)> {
-        told_to([CLOSE, OPEN], contractions, count)
-    }
 
     fn told_to(calibrated: [[f64; 2]; 2], contractions: &[[f64; 2]], count: usize) -> Vec<(usize, Fit)> {
         let uv = |mv: [f64; 2]| mv.map(|mv| (mv * 1e3) as i32);
@@ -146,15 +130,6 @@ mod tests {
             }
         }
         told
-    }
-
-    // Shows W9.
-    #[test]
-    fn who_does_what_was_calibrated_is_asked_for_nothing() {
-        assert_eq!(told(&[CLOSE, OPEN], 60), []);
-        assert_eq!(told(&[OPEN], 60), [], "nor who only opens");
-        assert_eq!(told(&[CLOSE], 60), [], "nor who only closes");
-        assert_eq!(told(&[CLOSE.map(|mv| 0.7 * mv), OPEN.map(|mv| 1.4 * mv)], 60), []);
     }
 
     #[test]
@@ -192,23 +167,24 @@ mod tests {
 
     // Shows W9.
     #[test]
-    fn exchanged_plugs_are_told_after_twelve_contractions() {
+    fn moved_or_exchanged_electrodes_are_told_after_twelve_contractions_and_sound_ones_never() {
         let swap = |[flexor, extensor]: [f64; 2]| [extensor, flexor];
-        // The twelfth is over as the thirteenth begins.
-        let first = CONTRACTIONS as usize;
-        assert_eq!(told(&[swap(CLOSE), swap(OPEN)], 40), [(first, Fit::Exchanged)]);
-        assert_eq!(told(&[swap(OPEN)], 40), [(first, Fit::Exchanged)], "and by one of them alone");
-    }
-
-    // Shows W9.
-    #[test]
-    fn electrodes_that_moved_are_told_and_told_to_fit_when_they_do() {
-        // Openings that the hand does not answer, and contractions that drive both electrodes alike.
-        for both in [[CLOSE, [150.0, 300.0]], [[450.0, 400.0], [400.0, 450.0]]] {
-            assert_eq!(told(&both, 40), [(CONTRACTIONS as usize, Fit::Moved)], "{both:?}");
+        let twelve = |fit| Vec::from([(CONTRACTIONS as usize, fit)]);
+        // 24 that fit follow twelve that drive both electrodes alike.
+        let fits_again = [[400.0; 2]; 12].into_iter().chain([CLOSE, OPEN].repeat(12));
+        for (contractions, count, expected) in [
+            (&[CLOSE, OPEN][..], 60, Vec::new()),
+            (&[OPEN], 60, Vec::new()),
+            (&[CLOSE], 60, Vec::new()),
+            (&[CLOSE.map(|mv| 0.7 * mv), OPEN.map(|mv| 1.4 * mv)], 60, Vec::new()),
+            (&[swap(CLOSE), swap(OPEN)], 40, twelve(Fit::Exchanged)),
+            (&[swap(OPEN)], 40, twelve(Fit::Exchanged)),
+            // Unanswered openings, and contractions that drive both electrodes alike.
+            (&[CLOSE, [150.0, 300.0]], 40, twelve(Fit::Moved)),
+            (&[[450.0, 400.0], [400.0, 450.0]], 40, twelve(Fit::Moved)),
+            (&Vec::from_iter(fits_again), 37, Vec::from([(12, Fit::Moved), (24, Fit::Fits)])),
+        ] {
+            assert_eq!(told_to([CLOSE, OPEN], contractions, count), expected, "{contractions:?}");
         }
-        let mut all = Vec::from([[400.0, 400.0]; 12]);
-        all.extend([CLOSE, OPEN].iter().cycle().take(24));
-        assert_eq!(told(&all, 37), [(12, Fit::Moved), (24, Fit::Fits)]);
     }
 }

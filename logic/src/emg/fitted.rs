@@ -1,16 +1,13 @@
 //! The constants of the wearer's model. `cargo tenax train emg --ship` replaces this file.
 //!
-//! Model card. Fitted on: UniBo-INAIL envelopes of Ottobock 13E200 electrodes, persons 1 to 4, 4 days, 2 arm postures
-//! (`../shared/data/myobock`), read 240 times a second as the board reads, calibrated from two repetitions of the same session.
-//! How: a random search over a grid, scored by windows right, windows the wrong way, false motions at rest and latency; each
-//! person counts alike. `least_rise`, `hysteresis`, `least_end`, `least_fall` and `place_stays` of closing were then set by hand with the
-//! two-channel recordings in view; so were `mean_frames`, `begins` of opening, `after_frames` and `busy`, one at a time: fewer false
-//! motions for two of the four people, and more for none. Nobody was held apart. Not used: faults, scenes. `docs/emg.md` has what it
-//! scores on whom.
+//! Model card. Fitted on UniBo-INAIL envelopes of Ottobock 13E200 electrodes, persons 1 to 4, 4 days, 2 arm
+//! postures, read 240 times a second, calibrated from two repetitions of the same session: a random search
+//! over a grid, scored by windows right, windows the wrong way, false motions at rest and latency. Several
+//! constants were then set by hand. Nobody was held apart. Faults and scenes were not used. `docs/emg.md` has
+//! the scores.
 
 use super::constants::Fitted;
 
-/// The constants of the model that the image runs.
 pub static FITTED: Fitted = Fitted {
     mean_frames: 10,
     begins: [450, 690],

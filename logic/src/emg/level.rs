@@ -1,24 +1,21 @@
-//! Levels of an envelope: its logarithm, above a floor. A contraction's share and direction are differences of levels.
+//! Levels of an envelope: its logarithm above a floor.
 
 use super::log2;
 
-/// Offset that is added to every envelope before the logarithm, uV. Much smaller envelopes are no muscle's, and their logarithm
-/// would fluctuate.
+/// Offset of every envelope before the logarithm, uV: much smaller envelopes are no muscle's, and their
+/// logarithm would fluctuate.
 pub const FLOOR_UV: i32 = 30_000;
-/// The level of an envelope of zero, Q10 octaves.
 pub const FLOOR_LEVEL: i32 = level_of(0);
-/// The level of 3.3 V, the highest possible, Q10 octaves.
+/// Level of 3.3 V.
 pub const TOP_LEVEL: i32 = level_of(3_300_000);
 
-/// `log2(uv + FLOOR_UV)`, Q10, at most 0.01 from the true one. Anything below zero is taken as it.
-#[must_use]
+/// `log2(uv + FLOOR_UV)`, Q10; error at most 0.01. Below zero it is that of zero.
 #[inline]
 pub const fn level_of(uv: i32) -> i32 {
     log2::level_of(FLOOR_UV.saturating_add(if uv < 0 { 0 } else { uv }))
 }
 
-/// The highest envelope of this level, uV.
-#[must_use]
+/// Highest envelope of this level, uV.
 pub const fn uv_of(level: i32) -> i32 {
     let (mut uv, mut bit) = (0, 1 << 21);
     while bit > 0 {

@@ -1,17 +1,15 @@
-//! Levels of an envelope as logarithms: a muscle's fluctuation is a part of its level, and so is what tells two
-//! contractions apart, so all decisions are differences of logarithms.
+//! Base-2 logarithm of an integer, Q10.
 
-/// Fraction bits of a level: 1024 is a doubling.
+/// 1024 is a doubling.
 pub const LEVEL_Q: u32 = 10;
-/// Envelopes below this are taken as it, uV: the noise of a pin is no muscle, and its logarithm would swing.
+/// Envelopes below this count as it, uV: their logarithm would swing with the noise of a pin.
 pub const FLOOR_UV: i32 = 8_000;
 
-/// Four times the difference between log2(1 + m) and m half way between two octaves, about: Q15. A parabola through it
-/// and both ends is the logarithm within a hundredth.
+/// Four times log2(1 + m) - m half way between two octaves, Q15. A parabola through it and both ends is the
+/// logarithm within 0.01.
 const BEND_Q15: u32 = 11_200;
 
-/// `log2(uv)`, Q10, at most 0.01 from the true one. Anything below [`FLOOR_UV`] is taken as it.
-#[must_use]
+/// `log2(uv)`, Q10; error at most 0.01.
 #[inline]
 pub const fn level_of(uv: i32) -> i32 {
     let uv = if uv < FLOOR_UV { FLOOR_UV as u32 } else { uv as u32 };

@@ -1,19 +1,12 @@
-//! Mains in an envelope: a spectrum of 0.8 s, outside the tick.
-//!
-//! What can be seen. Each muscle is read three times a slow frame, unevenly. The first reading of each slow frame is an
-//! even series of 80 Hz, so everything above 40 Hz is folded: 50 Hz to 30, 100 Hz (50 Hz rectified) to 20, 150 to 10,
-//! 200 to 40; 60 Hz to 20, 120 to 40, 180 to 20. A muscle's envelope has its energy below 10 Hz, where the myosensor's
-//! low-pass lets it, so a line at 20, 30 or 40 Hz is mains (150 Hz cannot be told from a muscle and is left out).
-//! What cannot be seen. The low-pass of a myosensor leaves little ripple: a second-order one at 4 Hz lets 0.16 % of
-//! 100 Hz through, a first-order one of 60 ms rise 6 %. The steady part of rectified hum is a level like any other. So
-//! the ripple names the fault, but that the level does not fluctuate is what finds it
-//! ([`quality`](super::quality)).
+//! Mains in an envelope: a spectrum of 0.8 s, outside the tick. At 80 readings a second the lines fold: 50 Hz
+//! to 30, 100 to 20, 200 to 40; 60 Hz to 20, 120 to 40, 180 to 20. A muscle's envelope lies below 10 Hz, so a
+//! line at 20, 30 or 40 Hz is mains; 150 Hz (10) is left out. A myosensor's low-pass leaves little ripple:
+//! the constant level finds the fault ([`trust`](super::trust)), the ripple names it.
 
 /// Readings in a window, one a slow frame: 0.8 s, bins of 1.25 Hz.
 pub const WINDOW: usize = 64;
-/// uV in one unit of a window's value.
 pub const UNIT_UV: i32 = 128;
-/// Bins of the folded mains lines and their neighbours, into which the window's shape spreads them.
+/// Bins of the folded mains lines and their neighbours.
 const LINES: [bool; WINDOW / 2] = {
     let mut lines = [false; WINDOW / 2];
     let mut n = 0;
@@ -25,32 +18,26 @@ const LINES: [bool; WINDOW / 2] = {
     lines[31] = true;
     lines
 };
-/// First bin (5 Hz) of the muscle's noise; lower bins hold the contractions themselves.
+/// First bin (5 Hz) of the muscle's noise; lower bins hold the contractions.
 const FIRST_BIN: usize = 4;
-/// The least amplitude of a line that is mains, uV: four times what the noise of a pin makes of it.
+/// Least amplitude of a mains line, uV: four times what the noise of a pin makes.
 const LEAST_LINE_UV: u32 = 400;
-/// The least part of all alternating power above 5 Hz that lies in the lines, per mille. White noise has 230.
+/// Least share of the alternating power above 5 Hz, per mille. White noise has 230.
 const LEAST_SHARE_PERMILLE: u16 = 600;
 
-/// The mains in a window of an envelope: the result of [`mains_of`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Mains {
-    /// Amplitude of all lines together, uV.
     pub line_uv: u32,
-    /// Part of the alternating power above 5 Hz that lies in these lines, per mille.
     pub share_permille: u16,
 }
 
 impl Mains {
-    /// Whether the mains lines stand out: of at least 400 uV and 60 % of the power.
-    #[must_use]
     pub const fn is_heard(self) -> bool {
         self.line_uv >= LEAST_LINE_UV && self.share_permille >= LEAST_SHARE_PERMILLE
     }
 }
 
-/// The mains in a window of one channel. About 4000 instructions: for the thread, not the tick.
-#[must_use]
+/// About 4000 instructions: for the thread, not the tick.
 pub fn mains_of(window: &[i16; WINDOW]) -> Mains {
     // A straight line is no vibration: without it, a contraction that begins fills every bin.
     let mean = window.iter().map(|&v| f32::from(v)).sum::<f32>() / WINDOW as f32;
@@ -83,8 +70,7 @@ pub fn mains_of(window: &[i16; WINDOW]) -> Mains {
     }
 }
 
-/// A raised cosine, (1 - cos(2 pi n / N)) / 2: a line's power stays within its own bin and its two neighbours. The
-/// cosine is Bhaskara's, at most 0.0017 off.
+/// Raised cosine, (1 - cos(2 pi n / N)) / 2. The cosine is Bhaskara's, at most 0.0017 off.
 const HANN: [f32; WINDOW] = {
     let mut hann = [0.0; WINDOW];
     let mut n = 0;

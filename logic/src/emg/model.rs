@@ -1,50 +1,42 @@
-//! The calibration of a wearer: levels of rest and of the two chosen contractions in the plane of the two
-//! logarithmic envelopes.
-//!
-//! Neither electrode is a muscle of its own: a fist drives both, and an electrode hears its neighbours. So the wearer
-//! chooses two contractions that differ, and the electrode that is relatively stronger in one of them is its site.
+//! The calibration of a wearer: levels of rest and of two chosen contractions. Neither electrode is a muscle
+//! of its own, so the electrode that is relatively stronger in a contraction is its site.
 
-/// Why a calibration was not taken.
 pub use tenax_hal_shim::words::CalibrationRefusal as Refusal;
 
 use super::level::{FLOOR_LEVEL, TOP_LEVEL, level_of};
 
-/// How many words a model is kept in.
 pub const MODEL_WORDS: usize = 10;
 /// Changes whenever a word's meaning does.
 const VERSION: i32 = 2;
 
-/// The part of an octave, per mille, as a difference of levels.
 pub(super) const fn octaves(permille: i32) -> i32 {
     permille * 1_024 / 1_000
 }
 
-/// A contraction's site stands out at least this far from rest: a factor of 2.3. A rest that drifts by half between two
-/// sessions of an hour then stays below the threshold between.
+/// Least rise of a contraction's site above rest: a factor of 2.3. A rest that drifts by half within an hour
+/// stays below the threshold.
 const LEAST_RISE: i32 = octaves(1_200);
-/// The ratio of the electrodes differs between the two contractions at least by this: a factor of 2.3.
+/// Least difference of the electrodes' ratio between the two contractions: a factor of 2.3.
 const LEAST_TURN: i32 = octaves(1_200);
-/// The least distance of two of the three states, in thousandths of their common standard deviation.
+/// Least distance of two of the three states, in thousandths of their common standard deviation.
 pub const LEAST_SEPARATION_PERMILLE: i32 = 2_200;
-/// A rest that wanders more, in standard deviations, is no rest: 41 %.
+/// Largest standard deviation of rest: 41 %.
 const NOISIEST_REST: i32 = octaves(500);
 
-/// Mean levels of both electrodes in one state, [`level_of`] of uV, flexor first.
+/// Levels of both electrodes, [`level_of`] of uV, flexor first.
 pub type Point = [i32; 2];
 
-/// A wearer. Valid by construction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct EmgModel {
     rest: Point,
     close: Point,
     open: Point,
-    /// Standard deviation of rest.
     spread: Point,
     separation_permille: i32,
 }
 
 impl EmgModel {
-    /// A model from its measured states. `separation_permille` as [`separation`](Self::separation_permille) tells it.
+    /// Fails with the reason why no calibration could have given these.
     pub const fn new(
         rest: Point,
         close: Point,
@@ -59,7 +51,7 @@ impl EmgModel {
         }
     }
 
-    /// A wearer whose states have these envelopes, uV, flexor first: for scenes and tests.
+    /// Envelopes of the states, uV, flexor first: for scenes and tests.
     pub const fn of_uv(rest: [i32; 2], close: [i32; 2], open: [i32; 2]) -> Result<Self, Refusal> {
         const fn point(uv: [i32; 2]) -> Point {
             [level_of(uv[0]), level_of(uv[1])]
@@ -103,49 +95,42 @@ impl EmgModel {
         None
     }
 
-    /// By how much the ratio of the electrodes differs between the two contractions.
     const fn turn(&self) -> i32 {
         ((self.open[1] - self.open[0]) - (self.close[1] - self.close[0])).abs()
     }
 
-    /// The electrode that is relatively stronger when the wearer closes: 0 the flexor's, 1 the extensor's.
+    /// Electrode that is relatively stronger in closing: 0 flexor, 1 extensor.
     pub const fn closing_site(&self) -> usize {
         let [close, open] = [self.close[1] - self.close[0], self.open[1] - self.open[0]];
         if open >= close { 0 } else { 1 }
     }
 
-    /// The electrode of the opening contraction: 0 the flexor's, 1 the extensor's.
     pub const fn opening_site(&self) -> usize {
         1 - self.closing_site()
     }
 
-    /// Levels at rest.
     pub const fn rest(&self) -> Point {
         self.rest
     }
 
-    /// Levels of the contraction that closes.
     pub const fn close(&self) -> Point {
         self.close
     }
 
-    /// Levels of the contraction that opens.
     pub const fn open(&self) -> Point {
         self.open
     }
 
-    /// Standard deviation at rest.
     pub const fn spread(&self) -> Point {
         self.spread
     }
 
-    /// How well the three states separate: the smallest distance of two of them, in thousandths of their common
-    /// standard deviation. From 2200 a calibration is taken; nearly all recordings have 4000 and more.
+    /// Smallest distance of two states, in thousandths of their common standard deviation. From 2200 a
+    /// calibration is taken; nearly all recordings have 4000 and more.
     pub const fn separation_permille(&self) -> i32 {
         self.separation_permille
     }
 
-    /// The words to save.
     pub const fn to_words(&self) -> [i32; MODEL_WORDS] {
         let Self { rest, close, open, spread, separation_permille } = self;
         [
@@ -162,7 +147,6 @@ impl EmgModel {
         ]
     }
 
-    /// A model from saved words. Fails if no calibration could have given them.
     pub const fn from_words(words: [i32; MODEL_WORDS]) -> Result<Self, Refusal> {
         let [version, rf, re, cf, ce, of, oe, sf, se, separation] = words;
         if version != VERSION {

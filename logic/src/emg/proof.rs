@@ -1,56 +1,51 @@
-//! Whether a wish is a muscle's: what is not proven moves the hand gently ([`Gate`](crate::gate::Gate)).
-//!
-//! A fault lies under one electrode, and jumps or stands still; a contraction is heard by both, and rises over tenths of a
-//! second or turns. So an opening is proven when the other electrode has risen lately above all that it was just before, *and* its own
-//! envelope rose by degrees or has turned. Both are known as a rule when the wish begins: a wish takes longer than they do.
+//! Whether a wish is proven to be a muscle's. A fault lies under one electrode, and jumps or stands still. So
+//! an opening is proven when the other electrode has risen lately, out of proportion, *and* its own envelope
+//! rose by degrees or has turned.
 
 use super::decide::{OVER_UV, Wish};
 use super::level::{TOP_LEVEL, level_of};
 use super::model::Point;
 use super::trust::{TOP_UV, Trust};
 
-/// Slow frames in a block, 0.1 s; the first five blocks that are kept are before.
+/// Slow frames in a block, 0.1 s; the first five blocks are the time before.
 const BLOCK_FRAMES: u8 = 8;
 const BLOCKS: usize = 9;
 const BEFORE: usize = 5;
-/// The least rise of the other electrode that is one, Q10 octaves: 9 %. At rest 0.5 to 3 % of such times have one, of real
-/// openings 84 to 100 %; and so many standard deviations of its rest.
+/// Least rise of the other electrode, Q10 octaves: 9 %. At rest 0.5 to 3 % of such times have one, of real
+/// openings 84 to 100 %.
 const LEAST_HEARD: i32 = 123;
 /// Slow frames from the begin of a wish in which the other electrode has to rise: 1.5 s.
 const HEARD_FRAMES: u16 = 120;
 /// Slow frames in a row that make a rise: one is a glitch.
 const HEARD_FOR: u8 = 2;
-/// A gradual rise: no block has more than [`MOST_IN_BLOCK`] of it, per mille, and at least [`BLOCKS_OF_RISE`] blocks have
-/// [`PART_OF_BLOCK`] or more.
+/// Gradual rise: at most [`MOST_IN_BLOCK`] of it in a block, per mille, and at least [`PART_OF_BLOCK`] in
+/// [`BLOCKS_OF_RISE`] blocks.
 const MOST_IN_BLOCK: i32 = 650;
 const PART_OF_BLOCK: i32 = 100;
 const BLOCKS_OF_RISE: usize = 3;
 /// Least height of a gradual rise, Q10 octaves.
 const LEAST_RISE: i32 = 512;
-/// A gradual rise has slowed down to this part of its fastest step, per mille.
+/// Part of its fastest step to which a gradual rise has slowed down, per mille.
 const SLOWER: i32 = 600;
-/// Rises whose parts of the whole differ by this part of their sum, 8 %, are not in proportion.
+/// Difference of two rises' parts of the whole, as a part of their sum (8 %), that is out of proportion.
 const APART_PART: i32 = 12;
-/// Slow frames within which the same wish is gone on with, and need not be heard again: 0.1 s.
+/// Slow frames within which the same wish goes on without new proof: 0.1 s.
 const GOES_ON_FRAMES: u16 = 8;
 /// Slow frames for which a proven opening above the sensor's range stays proven: 0.5 s.
 const OVER_FRAMES: u16 = 40;
-/// Each unproven opening makes the next harder to believe, this often at most, and so many slow frames of rest take one back: 10 s.
+/// Each unproven opening makes the next harder to believe, three times at most; 10 s of rest take one back.
 const MOST_WARY: u8 = 3;
 const WARY_FRAMES: u16 = 800;
 
-/// An envelope swings when it rises and falls by this, Q10 octaves, and is activity meanwhile; the other electrode hears a muscle that
-/// does, but rarely not. So many swings that it does not hear, none of them longer ago than this, in slow frames, 3 s, are no muscle's:
-/// an electrode that is loose, or hums with the arm's swing.
+/// Rise and fall of a swing, Q10 octaves; swings that the other electrode does not hear, within 3 s (240 slow
+/// frames), of a loose electrode or one that hums with the arm's swing.
 const SWING: i32 = 1_024;
 const LONE_SWINGS: u8 = 2;
 const SWING_FRAMES: u16 = 240;
 
-/// An envelope that swings.
 #[derive(Clone, Copy, Debug)]
 struct Swings {
     low: i32,
-    /// The highest since, once it has risen.
     high: Option<i32>,
     was_active: bool,
     /// The other electrode's level at `low`, and its highest level since.
@@ -60,14 +55,13 @@ struct Swings {
 }
 
 impl Default for Swings {
-    /// The first level becomes `low`.
     fn default() -> Self {
         Self { low: i32::MAX, high: None, was_active: false, other: [0; 2], lone: 0, since: 0 }
     }
 }
 
 impl Swings {
-    /// Takes its level and the other electrode's of a slow frame. Whether it swings alone.
+    /// Levels of both electrodes in a slow frame. True if this one swings alone.
     #[inline(never)]
     fn take(&mut self, level: i32, other: i32, is_active: bool) -> bool {
         self.since = self.since.saturating_add(1);
@@ -96,55 +90,29 @@ impl Swings {
     }
 }
 
-/// Both electrodes' recent past, and what it proves.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Proof {
     /// Highest level of each block, oldest first, 0 before the first reading; the last is under way.
     blocks: [[i16; BLOCKS]; 2],
     frames: u8,
     wish: Wish,
     age: u16,
-    /// Each electrode's level before the wish.
     before: [i32; 2],
-    /// Slow frames in a row in which the other one is above that.
     hears: u8,
     heard: bool,
-    /// The two rises are not in proportion.
     apart: bool,
     proven: bool,
     over: u16,
-    /// The last wish that was proven, and slow frames since.
     last: (Wish, u16),
     wary: u8,
     rest: u16,
     swings: [Swings; 2],
 }
 
-impl Default for Proof {
-    fn default() -> Self {
-        Self {
-            blocks: [[0; BLOCKS]; 2],
-            frames: 0,
-            wish: Wish::Rest,
-            age: 0,
-            before: [0; 2],
-            hears: 0,
-            heard: false,
-            apart: false,
-            proven: false,
-            over: 0,
-            last: (Wish::Rest, u16::MAX),
-            wary: 0,
-            rest: 0,
-            swings: Default::default(),
-        }
-    }
-}
-
 impl Proof {
-    /// Takes a pair of levels of each slow frame, none without a number, and the wish that they make: whether it is proven. `mover` is the
-    /// electrode of the wish, `trust` what is thought of it, `hears` the other one's rest and how far above it rises at least, Q10
-    /// octaves, none if it hardly does: then turning twice is all there is. `raised`: the mover's electrode is active.
+    /// Levels of a slow frame, None without a number, and their wish. `hears`: rest of the other electrode
+    /// and its least rise, Q10 octaves; None if it hardly rises, so that only turning twice proves. `raised`:
+    /// the mover's electrode is active.
     #[inline(never)]
     pub fn take(
         &mut self,
@@ -179,7 +147,7 @@ impl Proof {
             };
         }
         if self.over > OVER_FRAMES || !(over || trust.is_sound() && raised) {
-            // It is over, though its wish may last for a moment, or it is no muscle's. Whatever follows is another contraction, which has to be heard.
+            // The contraction is over, or no muscle's: a later one has to be heard again.
             (self.proven, self.heard, self.age) = (false, false, HEARD_FRAMES);
         }
         self.proven &= !trust.is_straight();
@@ -189,8 +157,7 @@ impl Proof {
         self.proven
     }
 
-    /// Takes a pair of levels of each slow frame, as above, and whether each is activity: which electrodes swing and are not heard by
-    /// the other.
+    /// The electrodes that swing unheard by the other.
     pub fn lone(&mut self, levels: [Option<i32>; 2], active: [bool; 2]) -> [bool; 2] {
         let [Some(flexor), Some(extensor)] = levels else { return [false; 2] };
         let [own, other] = &mut self.swings;
@@ -205,12 +172,11 @@ impl Proof {
         }
         for (blocks, level) in self.blocks.iter_mut().zip(levels) {
             if next {
-                // `rotate_left` would link a move of any length.
+                // `rotate_left` pulls in memmove.
                 for n in 1..BLOCKS {
                     blocks[n - 1] = blocks[n];
                 }
             }
-            // What gives no number stands where it stood.
             let Some(level) = level else { continue };
             let level = level as i16;
             let last = &mut blocks[BLOCKS - 1];
@@ -235,29 +201,29 @@ impl Proof {
         }
         (self.wish, self.age, self.over) = (wish, 0, 0);
         self.before = [0, 1].map(|n: usize| self.before(n));
-        // It is no rest, which is never proven.
+        // Not for rest, which is never proven.
         self.heard = wish == self.last.0 && self.last.1 < GOES_ON_FRAMES;
         self.apart = self.heard;
         self.proven = false;
     }
 
-    /// The highest level of each electrode in the block that is under way.
     pub fn levels(&self) -> Point {
         self.blocks.map(|[.., now]| now.into())
     }
 
-    /// An electrode's highest level of 0.4 to 0.8 s ago.
+    /// Highest level of 0.4 to 0.8 s ago.
     fn before(&self, n: usize) -> i32 {
         self.blocks[n & 1].iter().take(BEFORE).copied().max().map_or(0, i32::from)
     }
 
-    /// Rise of electrode `n` above the lower of [`before`](Self::before) and its level when the wish began, or above rest if that
-    /// is higher, Q10 octaves.
+    /// Rise above the lower of [`before`](Self::before) and the level at the wish's begin, or above rest if
+    /// that is higher, Q10 octaves.
     fn rise(&self, n: usize, level: Option<i32>, rest: i32) -> i32 {
         level.map_or(0, |level| level - self.before(n).min(self.before[n & 1]).max(rest))
     }
 
-    /// Whether both rise, but not in proportion: what reaches both electrodes at once does, or jumps.
+    /// Both rise, out of proportion: a signal that reaches both electrodes at once rises in proportion, or
+    /// jumps.
     #[inline(never)]
     fn rise_apart(&self) -> bool {
         let low = self.blocks.map(least);
@@ -276,8 +242,8 @@ impl Proof {
         apart
     }
 
-    /// Whether electrode `n` has risen over several blocks and slows down, as a muscle does. Creep does not slow down. At the top
-    /// of the range any signal does, so that does not count.
+    /// Rise over several blocks that slows down; creep does not. At the top of the range any signal slows
+    /// down, which does not count.
     fn is_gradual(&self, n: usize) -> bool {
         let blocks = self.blocks[n & 1].map(i32::from);
         let [.., last_but_one, last, now] = blocks;
@@ -295,13 +261,12 @@ impl Proof {
     }
 }
 
-/// The lowest of them.
 #[inline(never)]
 fn least(blocks: [i16; BLOCKS]) -> i32 {
     blocks.into_iter().fold(i32::from(i16::MAX), |least, level| least.min(level.into()))
 }
 
-/// Rise of the envelope between two levels as a part of the range, Q18; 0 if it falls.
+/// Rise between two levels as a part of the range, Q18; 0 if it falls.
 #[inline(never)]
 const fn climbs(from: i32, to: i32) -> i32 {
     // 2 to the power of a level below the highest, to 0.2 %.

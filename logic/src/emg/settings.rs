@@ -2,15 +2,11 @@
 
 use crate::setting::settings;
 
-/// Thresholds of the myoelectric gate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct GateConfig {
-    /// Envelope above rest that both muscles have to reach to consent, mV.
     pub on_mv: u16,
-    /// How long a muscle counts as active after its last activity, in frames: the pause between two contractions is
-    /// not an invitation to the reflex.
+    /// Hold time of activity: the pause between two contractions is no invitation to the reflex.
     pub hold_frames: u32,
-    /// Duty asked for by the weakest contraction that moves the hand, per mille.
     pub slowest_permille: u16,
 }
 
@@ -21,5 +17,5 @@ settings! {
     /// How long a muscle counts as active after its last activity
     20 EmgHold "emg-hold-ms" "ms" [100, 1_000] = 200 => Ms(hold_frames);
     /// Motor duty for the weakest contraction: the least that still moves the hand
-    22 EmgSlowest "emg-slowest-permille" "per mille" [280, 350, trusted 200, 1_000] = 300 => Number(slowest_permille);
+    22 EmgSlowest "emg-slowest-permille" "per mille" [200, 1_000] = 300 => Number(slowest_permille);
 }

@@ -1,8 +1,6 @@
-//! Whether a myosensor's envelope is one of a muscle: whether it is doubted, and whether a contraction is proven.
-//!
-//! Each doubt has a time that no sound recording reaches (`docs/emg.md`). A doubt takes an electrode's weight; it vetoes nothing
-//! of the other one. Proof is what no single fault does: the envelope turns or curves again and again; that the other electrode
-//! hears it too is asked for in [`decide`](super::decide).
+//! Quality of a myosensor's envelope, and the turns that only a muscle makes. Each fault has a duration that
+//! no sound recording reaches (`docs/emg.md`). A doubted electrode loses its weight; it vetoes nothing of the
+//! other one.
 
 use super::mains::{Mains, UNIT_UV, WINDOW};
 
@@ -10,53 +8,47 @@ use super::mains::{Mains, UNIT_UV, WINDOW};
 pub const TOP_UV: i32 = 2_850_000;
 /// Readings without a number that are bridged: 50 ms.
 const BRIDGED_READINGS: u8 = 12;
-/// An envelope stands still while it is within 1 % and this of where it stood, uV.
+/// Constant: within 1 % and this, uV.
 const STILL_UV: i32 = 1_500;
-/// Slow frames of standing still that no sound recording has: 1 s, of 0.77 s in 45 minutes of contractions.
+/// Slow frames of a constant envelope that is doubted: 1 s. Sound recordings have 0.77 s in 45 minutes at
+/// most.
 const FLAT_FRAMES: u16 = 80;
-/// Hum varies by less than this part of its level, 1/16.
+/// Hum varies by less than 1/16 of its level.
 const HUM_PART: i32 = 16;
-/// Slow frames of rise without a fall of 3 % that no sound recording has: 2.5 s. The longest in those 45 minutes is 2 s.
+/// Slow frames of rise without a fall of 3 %: 2.5 s. Sound recordings have 2 s at most.
 const CREEP_FRAMES: u16 = 200;
-/// Slow frames at the top of the range that no sound recording has: 1.5 s. Recordings have 0.35 s.
+/// Slow frames at the top of the range: 1.5 s. Recordings have 0.35 s.
 const TOP_FRAMES: u16 = 120;
-/// Slow frames of activity without a pause that no muscle has: 60 s. One person has tone for more than 30 s.
+/// Slow frames of activity without a pause: 60 s. One person has tone for more than 30 s.
 const ENDLESS_FRAMES: u16 = 4_800;
 /// Good slow frames after which an electrode is believed again: 1 s.
 const BACK_FRAMES: u16 = 80;
 /// Slow frames between the points of a curve, 50 ms, and before its first one counts.
 const LAG: usize = 4;
 const FIRST_PROOF_FRAMES: u16 = 20;
-/// The part of its level by which a proof curves, and slow frames between two proofs: 0.15 s, more than one jump takes. Two
-/// make a muscle.
+/// Least curvature of a proof, as a part of the level, and slow frames between two proofs: 0.15 s, more than
+/// one jump takes.
 const PROOF_PART: i32 = 12;
 const PROOF_APART: u16 = 12;
 /// Slow frames without a proof after which a contraction has to prove itself again: 1 s.
 const PROOF_LASTS: u16 = 80;
 
-/// Quality of a myosensor's envelope: a muscle's signal, or a kind of fault.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Quality {
-    /// A muscle's signal.
     #[default]
     Good,
-    /// No contact: out of range, or as restless as a loose electrode.
+    /// Out of range, or as restless as a loose electrode.
     LeadOff,
     /// Constant, with mains in its spectrum.
     Hum,
-    /// Rises without falling back.
     Creep,
     /// Constant within 1 %.
     Flat,
-    /// Active for longer than a muscle can be.
     Endless,
-    /// At the top of the range.
     Saturated,
 }
 
 impl Quality {
-    /// Name in reports.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Good => "good",
@@ -76,7 +68,6 @@ impl core::fmt::Display for Quality {
     }
 }
 
-/// Watches one electrode.
 #[derive(Clone, Debug)]
 pub struct Trust {
     quality: Quality,
@@ -84,12 +75,11 @@ pub struct Trust {
     /// Readings in a row without a number, and the last one with it, uV.
     missing: u8,
     last_uv: i32,
-    /// Means of the last slow frames, in a ring.
     past_uv: [i32; 2 * LAG],
     place: u8,
     anchor_uv: i32,
     flat: u16,
-    /// Where it stood when it last had for as long as no muscle does.
+    /// Last envelope that was constant (1 % + 1.5 mV) for 1 s, uV above the live zero. 0: none.
     hum_uv: i32,
     active_for: u16,
     foot_uv: i32,
@@ -101,13 +91,11 @@ pub struct Trust {
     since_proof: u16,
     window: [i16; WINDOW],
     filled: u8,
-    /// Whether the window has a reading of this slow frame.
     kept: bool,
     mains: bool,
 }
 
 impl Default for Trust {
-    /// Nothing is known yet.
     fn default() -> Self {
         Self {
             quality: Quality::Good,
@@ -135,8 +123,7 @@ impl Default for Trust {
 }
 
 impl Trust {
-    /// Takes a reading above the live zero, uV, None where the sensor gives no number. Returns the reading; in a gap of up to 50 ms,
-    /// the last one before it.
+    /// uV above the live zero. Gives the reading; in a gap of up to 50 ms, the last one before it.
     pub fn take(&mut self, uv: Option<i32>) -> Option<i32> {
         let Some(uv) = uv else {
             self.missing = self.missing.saturating_add(1);
@@ -155,12 +142,11 @@ impl Trust {
         Some(uv)
     }
 
-    /// The last reading, bridged, uV.
     pub fn last_uv(&self) -> Option<i32> {
         (self.missing <= BRIDGED_READINGS).then_some(self.last_uv)
     }
 
-    /// Takes the mean of a slow frame, uV; `active_uv` is the envelope from which the muscle is active.
+    /// Mean of a slow frame, uV; `active_uv`: envelope from which the muscle is active.
     pub fn judge(&mut self, active_uv: i32, uv: i32) {
         self.kept = false;
         let place = usize::from(self.place) % (2 * LAG);
@@ -176,7 +162,7 @@ impl Trust {
         self.stand(uv);
         let turned = self.climb(uv);
         let curves = curve_uv > uv.max(1) / PROOF_PART && !is_top && uv.max(middle).max(far) < TOP_UV;
-        // A muscle does not let go of half in 50 ms: what does has come off, or back on, and proves nothing.
+        // A fall by half in 50 ms is an electrode that has come off, or back on.
         self.prove((turned || curves) && uv >= middle / 2);
 
         let constant = if self.mains { Quality::Hum } else { Quality::Flat };
@@ -206,13 +192,12 @@ impl Trust {
 
     fn lose(&mut self, quality: Quality) {
         self.good = 0;
-        // The first reason stays, but a still envelope may later turn out to be mains.
+        // The first reason stays, but a constant envelope may later turn out to be mains.
         if self.is_good() || (self.quality == Quality::Flat && quality == Quality::Hum) {
             self.quality = quality;
         }
     }
 
-    /// A working muscle turns again and again. One jump from a fault to another does so once.
     fn prove(&mut self, turns: bool) {
         self.since_proof = self.since_proof.saturating_add(1);
         if self.active_for < FIRST_PROOF_FRAMES || self.since_proof > PROOF_LASTS {
@@ -231,18 +216,17 @@ impl Trust {
         if (uv - self.anchor_uv).abs() > self.anchor_uv / 100 + STILL_UV {
             (self.anchor_uv, self.flat) = (uv, 0);
         } else if uv < TOP_UV {
-            // At the top of its range a contraction stands still too.
             self.flat = self.flat.saturating_add(1);
         }
         if self.flat >= FLAT_FRAMES {
             self.hum_uv = self.anchor_uv;
         } else if (uv - self.hum_uv).abs() > self.hum_uv / HUM_PART + STILL_UV {
-            // What comes back there may be a muscle, until it stands still again.
+            // A level that comes back there may be a muscle's, until it is constant again.
             self.hum_uv = 0;
         }
     }
 
-    /// Whether it has just fallen back by 3 %.
+    /// Fallen back by 3 % in this frame.
     fn climb(&mut self, uv: i32) -> bool {
         let turned = self.active_for > 0 && uv < self.crest_uv - self.crest_uv / 32 - STILL_UV;
         if self.active_for == 0 || uv >= TOP_UV || turned {
@@ -257,64 +241,52 @@ impl Trust {
         turned
     }
 
-    /// Returns the quality of the envelope.
     pub const fn quality(&self) -> Quality {
         self.quality
     }
 
-    /// Whether the envelope is taken for a muscle's.
     pub const fn is_good(&self) -> bool {
         matches!(self.quality, Quality::Good)
     }
 
-    /// Whether the envelope has been constant for 0.2 s.
+    /// Constant for 0.2 s.
     pub const fn is_still(&self) -> bool {
         self.flat >= FLAT_FRAMES / 5
     }
 
-    /// Whether the electrode is doubted because its envelope is constant: its level then counts as hum.
     pub fn hums(&self) -> bool {
         matches!(self.quality, Quality::Flat | Quality::Hum) && self.flat >= FLAT_FRAMES
     }
 
-    /// Whether this reading, uV, is still at the constant level for which the electrode is doubted. An active muscle would
-    /// change it.
-    #[must_use]
     pub fn hums_at(&self, uv: i32) -> bool {
         matches!(self.quality, Quality::Flat | Quality::Hum)
             && (uv - self.hum_uv).abs() <= self.hum_uv / HUM_PART + STILL_UV
     }
 
-    /// Whether the present contraction has one proof of the last second: its envelope fell back by 3 % or curved, as a
-    /// muscle's does.
+    /// One proof within the last second: the envelope fell back by 3 % or curved.
     pub const fn has_turned(&self) -> bool {
         self.proofs >= 1
     }
 
-    /// Whether the present contraction has two such proofs, at least 0.15 s apart: one jump from a fault to another
-    /// gives only one.
+    /// Two proofs at least 0.15 s apart: one jump from a fault to another gives only one.
     pub const fn has_turned_twice(&self) -> bool {
         self.proofs >= 2
     }
 
-    /// Whether the envelope may still be a muscle's: not doubted, nor at the top of its range for 0.5 s, nor standing
-    /// still for 0.6 s.
+    /// Not doubted, nor at the top of its range for 0.5 s, nor constant for 0.6 s.
     pub const fn is_sound(&self) -> bool {
         self.is_good() && self.at_top < TOP_FRAMES / 3 && self.flat < 3 * FLAT_FRAMES / 5
     }
 
-    /// Whether the active envelope has neither fallen back by 3 % nor given a proof for 1 s.
+    /// Neither a fall of 3 % nor a proof for 1 s.
     pub const fn is_straight(&self) -> bool {
         self.climbing >= PROOF_LASTS && self.since_proof >= PROOF_LASTS
     }
 
-    /// Returns the window, the input of [`mains_of`](super::mains::mains_of): 64 readings, one a slow frame, the oldest
-    /// first, 128 uV a unit. None until it is full; then it stays until [`hear`](Self::hear).
     pub fn window(&self) -> Option<&[i16; WINDOW]> {
         (usize::from(self.filled) == WINDOW).then_some(&self.window)
     }
 
-    /// Takes the result of the window and begins the next one.
     pub const fn hear(&mut self, mains: Mains) {
         self.mains = mains.is_heard();
         self.filled = 0;

@@ -1,7 +1,7 @@
 //! The behaviour of the fingertip: how it begins, the drive that it may ask for in a tick, how it ends.
 
 use tenax_hal_shim::behaviour::{Behaviour, CameraView, Ending};
-use tenax_hal_shim::channel::FRAMES_PER_SLOW_FRAME;
+use tenax_hal_shim::channel::{FRAMES_PER_SLOW_FRAME, frames};
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::schedule::{Job, slot_of};
 use tenax_hal_shim::wire::{EventKind, Refusal};
@@ -10,12 +10,10 @@ use tenax_hal_shim::words::{GripMode, Line};
 use super::Fingertip;
 use super::verdicts::Verdicts;
 use crate::behaviours::{Course, Felt, Running, Wish, may_answer_slip, may_relax};
-use tenax_hal_shim::channel::frames;
 
-/// Age from which a picture is ignored, frames, including its age on arrival: the camera is lost, frozen or delayed.
+/// Age from which a picture is ignored, its age on arrival included: the camera is lost, frozen or delayed.
 const VIEW_FRAMES_MAX: u32 = frames(200);
 
-/// The last picture of the camera behind the skin.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Eye {
     view: Option<CameraView>,
@@ -24,13 +22,11 @@ pub(super) struct Eye {
 }
 
 impl Eye {
-    /// Takes a new picture.
     pub fn see(&mut self, view: CameraView) {
         let age_frames = frames(view.age_ms.into());
         *self = Self { view: (age_frames < VIEW_FRAMES_MAX).then_some(view), age_frames, is_new: true };
     }
 
-    /// Goes on by one tick.
     fn tick(&mut self) {
         self.is_new = false;
         self.age_frames += 1;
@@ -41,8 +37,6 @@ impl Eye {
 }
 
 impl Fingertip {
-    /// The behaviour that is under way. None: there is none.
-    #[must_use]
     pub fn behaviour(&self) -> Option<Behaviour> {
         self.behaviour.as_ref().map(Running::what)
     }
@@ -68,7 +62,6 @@ impl Fingertip {
         Ok(())
     }
 
-    /// Ends the behaviour that goes on, if one does.
     pub(super) fn end(&mut self, ending: Ending) {
         let Some(running) = self.behaviour.take() else { return };
         self.journal.event(EventKind::Behaviour(running.what(), Some(ending)));
@@ -77,7 +70,6 @@ impl Fingertip {
         }
     }
 
-    /// The behaviour's drive in this tick, within its limits.
     pub(super) fn behave(&mut self, verdicts: Verdicts) -> MotorDrive {
         if self.behaviour.is_none() && self.eye.view.is_none() {
             return MotorDrive::Coast;
@@ -112,7 +104,6 @@ impl Fingertip {
                 Course::On(wish @ Wish::Relax(_)) => match may_relax(self.line(), grip, self.mode) {
                     true => return wish.drive(),
                     false if self.line() == Line::Reading => Ending::NotArmed,
-                    // The reflex tightens, and the behaviour waits for it.
                     false => return MotorDrive::Coast,
                 },
                 Course::On(wish) => return wish.drive(),

@@ -13,10 +13,7 @@ use super::Fingertip;
 use crate::grip::Grip;
 
 impl Fingertip {
-    /// Carries out a command.
-    ///
-    /// # Errors
-    /// The reason why it was not carried out; nothing has changed then.
+    /// The reason why the command was not carried out; nothing has changed then.
     pub fn command(&mut self, command: &Down) -> Result<(), Refusal> {
         if !command.reads() {
             self.consents_to(command)?;
@@ -68,7 +65,7 @@ impl Fingertip {
             }
             Down::Forget => {
                 self.detectors.hebbian.forget();
-                // What is forgotten does not come back with the power.
+                // Saved, or the forgotten weights would come back with the power.
                 self.save_asked = true;
                 Ok(())
             }
@@ -76,7 +73,7 @@ impl Fingertip {
                 self.save_asked = true;
                 Ok(())
             }
-            // The wearer's contractions move nothing meanwhile: they could not open a hand that holds something.
+            // The wearer's contractions move nothing meanwhile: they could not open a loaded hand.
             Down::CalibrateEmg => match self.senses.grip {
                 Grip::Holds(_) => Err(Refusal::Loaded),
                 Grip::Unknown => Err(Refusal::SensorLost),
@@ -96,10 +93,9 @@ impl Fingertip {
         }
     }
 
-    /// Whether the line may carry this out.
     fn consents_to(&self, command: &Down) -> Result<(), Refusal> {
-        // Trusting the line for good, or declaring that there is no wearer, needs consent by muscles or button: that of
-        // power-up is not enough.
+        // Trusting the line, or declaring that there is no wearer, needs consent by muscles or button, not by
+        // power-up.
         let for_ever = matches!(*command, Down::Set(Setting { id, .. })
             if [SettingId::LineTrusted.number(), SettingId::NoWearer.number()].contains(&id));
         let consents = match self.line() {

@@ -10,27 +10,22 @@ use crate::button::Press;
 use crate::grip::Grip;
 
 impl Fingertip {
-    /// Sets whether the button at the hand is down, until the next call.
     pub const fn button(&mut self, is_down: bool) {
         self.button_is_down = is_down;
     }
 
-    /// Sets whether the motor bridge reports that it has switched itself off, until the next call.
     pub const fn bridge(&mut self, is_off: bool) {
         self.senses.motor.bridge(is_off);
     }
 
-    /// This start was a reset, not a power-up: no consent follows from it. Call it before the first tick.
     pub const fn was_reset(&mut self) {
         self.arming.was_reset();
     }
 
-    /// The commands that the serial line may give.
     pub fn line(&self) -> Line {
         self.arming.line(self.config.line_trusted)
     }
 
-    /// Looks for consent, and renews the budgets that an act at the hand renews.
     pub(super) fn consent(&mut self) {
         let gate = &self.senses.gate;
         let consent = self.arming.tick(Signs {
@@ -43,7 +38,6 @@ impl Fingertip {
         }
         self.press();
         let gate = &self.senses.gate;
-        // A trusted line has consent for good.
         if gate.is_active() || consent.is_some() || self.config.line_trusted {
             self.link.renew();
         }
@@ -66,12 +60,10 @@ impl Fingertip {
         }
     }
 
-    /// Whether the light at the hand is on: [`Muscles::light`](crate::muscles::Muscles::light).
     pub fn light(&self) -> bool {
         self.senses.muscles().light(self.journal.frame())
     }
 
-    /// Carries out the request of the button.
     #[inline(never)]
     fn press(&mut self) {
         let empty = matches!(self.senses.grip, Grip::Unloaded);
@@ -92,15 +84,14 @@ impl Fingertip {
         }
     }
 
-    /// The line's drive within its limits: it closes no harder than the reflex may.
+    /// Drive of the line within its limits: it closes no harder than the reflex may.
     pub(super) fn link_drive(&self) -> Option<MotorDrive> {
         let drive = self.link.drive()?;
         let grip = self.senses.grip;
         (drive.opens() || self.reflex.link_may_close(&self.config.grip, grip)).then_some(drive)
     }
 
-    /// Whether the line's drive silences the reflex: it opens, holds the hand where it is (duty 0), or closes with a motor that is
-    /// louder than slip.
+    /// The drive opens, holds the hand where it is (duty 0), or closes with a motor that is louder than slip.
     pub(super) fn link_silences(&self) -> bool {
         let loud_permille = self.config.hebbian.loud_duty_permille;
         match self.link_drive() {

@@ -1,19 +1,15 @@
-//! Limits the force that warnings add without confirmation.
-//!
-//! A warning may be wrong without end: films that hum, a friction that was learned on another object. So it may raise the load by half of
-//! what it was, and no more. If a warning means that the object slides, shear shows sooner whether it does: a sliding object carries
-//! Ft = mu Fn, which grows as the hand closes; a held one carries its weight, whatever the grip.
+//! Limit of the force that warnings add without confirmation: half of the load. Shear shows sooner whether
+//! the object slides: a sliding object carries Ft = mu Fn, a held one its weight.
 
 use tenax_hal_shim::wire::Forces;
 
-/// Growth of the load that a warning may cause, as a part of the load at which it began: 1/2.
+/// Growth of the load that a warning may cause: 1/2 of the load at its begin.
 const GROWTH_PART: i32 = 2;
-/// Growth of the load from which shear shows a held object, as a part of it: 1/8, several times the hysteresis.
+/// Growth of the load from which shear shows a held object: 1/8 of it, several times the hysteresis.
 const SHOWS_PART: i32 = 8;
-/// Ft of a held object grows by less than this part of what it would if it slid: 1/4.
+/// Ft of a held object grows by less than 1/4 of what it would if it slid.
 const HELD_PART: i64 = 4;
 
-/// Load and shear when a warning began.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Asked(Option<At>);
 
@@ -32,27 +28,22 @@ const fn at(forces: &Forces) -> At {
 }
 
 impl Asked {
-    /// Notes load and shear as a warning begins. Later calls change nothing until [`renew`](Self::renew).
     pub fn begin(&mut self, forces: &Forces) {
         self.0.get_or_insert(at(forces));
     }
 
-    /// Forgets what was noted. Call it when slip is confirmed or another grasp begins: the next warning may add force
-    /// again.
+    /// Call it when slip is confirmed or another grasp begins: the next warning may add force again.
     pub const fn renew(&mut self) {
         self.0 = None;
     }
 
-    /// Whether the load has grown since [`begin`](Self::begin) by more than the half that a warning may add, and
-    /// `on_top_mn`. False before `begin`.
-    #[must_use]
+    /// True if the load exceeds 1.5 times that at `begin` by `on_top_mn`: the allowance is spent.
     pub fn in_vain(&self, forces: &Forces, on_top_mn: i32) -> bool {
         self.0.is_some_and(|began| forces.load_mn > began.load_mn + began.load_mn / GROWTH_PART + on_top_mn)
     }
 
-    /// Whether the load has grown since [`begin`](Self::begin) by more than 1/8 and `on_top_mn`, and the shear by less
-    /// than a quarter of what a sliding object's would. False if the shear is not known.
-    #[must_use]
+    /// True if the load has grown by more than 1/8 and `on_top_mn`, and the shear by less than a quarter of a
+    /// sliding object's.
     pub fn is_held(&self, forces: &Forces, on_top_mn: i32) -> bool {
         let (Some(began), now) = (self.0, at(forces)) else { return false };
         let (Some(began_mn), Some(now_mn)) = (began.ft_mn, now.ft_mn) else { return false };
@@ -80,32 +71,13 @@ mod tests {
     }
 
     #[test]
-    fn half_as_much_again_and_no_more_until_something_is_known() {
-        let mut asked = Asked::default();
-        assert!(!asked.in_vain(&forces(9_000, 100), 0), "it asked for nothing");
-        for (load_mn, vain) in [(2_000, false), (3_000, false), (3_001, true)] {
-            asked.begin(&forces(load_mn, 100));
-            assert_eq!(asked.in_vain(&forces(load_mn, 100), 0), vain, "{load_mn}");
-        }
-        asked.renew();
-        assert!(!asked.in_vain(&forces(3_001, 100), 0));
-    }
-
-    #[test]
-    fn what_slides_carries_more_as_the_hand_closes_and_what_is_held_does_not() {
-        let mut asked = Asked::default();
-        assert!(!asked.is_held(&forces(9_000, 1_000), 0), "it asked for nothing");
-        asked.begin(&forces(4_000, 1_000));
-        assert!(!asked.is_held(&forces(4_400, 1_000), 0), "hysteresis could do that");
-        assert!(asked.is_held(&forces(4_600, 1_000), 0));
-        assert!(!asked.is_held(&forces(4_600, 1_150), 0), "it slides");
-        assert!(!asked.is_held(&Forces { ratio_permille: None, ..forces(4_600, 1_000) }, 0), "nobody knows");
-    }
-
-    #[test]
     fn its_limits_are_a_half_an_eighth_and_a_quarter_of_what_sliding_would_carry() {
         let mut asked = Asked::default();
+        let heavier = forces(9_000, 1_000);
+        assert!(!asked.in_vain(&heavier, 0) && !asked.is_held(&heavier, 0), "it asked for nothing");
         asked.begin(&forces(4_000, 1_000));
+        let unknown = Forces { ratio_permille: None, ..forces(4_600, 1_000) };
+        assert!(!asked.is_held(&unknown, 0));
         assert_eq!([6_100, 6_101].map(|mn| asked.in_vain(&forces(mn, 1_000), 100)), [false, true]);
         assert_eq!([4_500, 4_501].map(|mn| asked.is_held(&forces(mn, 1_000), 0)), [false, true]);
         assert_eq!([4_600, 4_601].map(|mn| asked.is_held(&forces(mn, 1_000), 100)), [false, true]);

@@ -1,83 +1,74 @@
-//! Drift of the quadrants (cells A to D, clockwise) since they were zeroed, estimated while something is held.
-//!
-//! Two facts tell drift from force. The element on the quadrants is rigid: for every load and shear, A + C = B + D. And only the
-//! motor changes a grip slowly: a lost object is lost at once, and skin yields by a limited part of the load.
-//!
-//! - **One cell** that drifts breaks the first rule. Its reading is then computed from the other three.
-//! - **All cells** that sink together look like a falling load. A slow fall with the motor at rest, beyond what skin yields,
-//!   is drift. If two cells have sunk to nothing, the sensor gives no force.
+//! Drift of the quadrants (cells A to D, clockwise) in a grasp. The element on them is rigid: A + C = B + D.
+//! One cell that drifts breaks this, and is computed from the other three. A slow fall of all with the motor
+//! at rest, beyond what skin yields, is drift of all. If two cells have sunk to nothing, the sensor gives no
+//! force.
 
 use tenax_hal_shim::channel::FSR_COUNT;
 
 use super::sensor::CARRIES_MN;
 
-/// Sign of each cell in A - B + C - D.
 const SIGNS: [i32; FSR_COUNT] = [1, -1, 1, -1];
-/// Cells may contradict each other by this, mN, and by this part of the load: hysteresis and gains (Interlink's guide) leave so much.
+/// Tolerated contradiction of the cells, mN, and as a part of the load: hysteresis and gains (Interlink's
+/// guide) leave so much.
 const TOLERATED_MN: i32 = 60;
 const TOLERATED_PART: i32 = 20;
-/// Readings for which they have to: half a second.
+/// Readings of contradiction after which a cell is blamed: half a second.
 const CONTRADICTS_FOR: u8 = 40;
 /// Readings of a new grasp over which the cells' gains are learned: half a second.
 const LEARN: u8 = 40;
 const LEARN_SHIFT: u32 = 3;
-/// Fraction bits of a contradiction as a part of the load.
 const GAIN_Q: u32 = 12;
-/// A cell's change is measured from its average over `2^ANCHOR_SHIFT` readings, 3 s, kept with as many fraction bits. Votes
-/// decay over `2^VOTES_SHIFT` readings.
+/// A cell's change is measured from its average over `2^ANCHOR_SHIFT` readings, 3 s, with as many fraction
+/// bits. Votes decay over `2^VOTES_SHIFT` readings.
 const ANCHOR_SHIFT: u32 = 8;
 const VOTES_SHIFT: u32 = 9;
-/// Another cell is blamed instead if it has at least this many times the votes.
+/// Ratio of votes from which another cell is blamed instead.
 const CLEARLY: i32 = 2;
-/// Votes that exceed noise: a few mN for as long as votes are kept. A vote is 2^VOTE_SHIFT mN^2.
+/// Votes that exceed noise. A vote is 2^VOTE_SHIFT mN^2.
 const HEARD: i32 = 200;
 const VOTE_SHIFT: u32 = 8;
-/// A drift is followed by this in a reading, mN: 0.24 N/s of one cell, 0.5 N/s of all.
+/// Drift that is followed in a reading, mN: 0.24 N/s of one cell, 0.5 N/s of all.
 const CELL_FOLLOWS_MN: i32 = 3;
 const ALL_FOLLOWS_MN: i32 = 6;
 /// Readings after the motor's last drive before a load stands still: 0.5 s.
 const STILL_FOR: u32 = 40;
-/// The part of a load that a skin may yield by itself.
+/// Part of a load that skin may yield by itself.
 const YIELDS_PART: i32 = 5;
 
-/// The cells' forces after correction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cells {
     /// Forces of A to D without drift, mN.
     Known([i32; FSR_COUNT]),
-    /// Too few cells carry a force: it cannot be separated from drift.
+    /// Too few cells carry a force: it cannot be told from drift.
     Sunk,
 }
 
-/// The drift of all four cells.
 #[derive(Clone, Debug, Default)]
 pub struct Drift {
-    /// The quadrant (0 to 3: A to D) that is judged to drift against the others. None if none is.
+    /// Quadrant (0 to 3: A to D) that drifts against the others.
     blamed: Option<u8>,
-    /// The contradiction between the cells beyond their gains, mN: the sign of the blamed cell times its drift.
+    /// Contradiction beyond the cells' gains, mN: the sign of the blamed cell times its drift.
     off_mn: i32,
     contradicts: u8,
     /// Readings since the grasp began, and A - B + C - D as a part of the load, caused by unequal gains.
     learned: u8,
     gain: i32,
-    /// Each cell's reading averaged over 3 s, mN with [`ANCHOR_SHIFT`] fraction bits, and the part of the contradiction that it
-    /// explains (votes).
+    /// Averages of 3 s, mN with [`ANCHOR_SHIFT`] fraction bits, and the part of the contradiction that each
+    /// cell explains.
     anchors: [i32; FSR_COUNT],
     votes: [i32; FSR_COUNT],
-    /// Sum of the drift of all cells, mN, and the load at which they were constant.
+    /// Drift of all cells together, mN, and the load at which they were constant.
     sunk_mn: i32,
     stood_at_mn: Option<i32>,
 }
 
 impl Drift {
-    /// The quadrant (0 to 3: A to D) that is judged to drift against the others. None if none is.
     pub fn blamed(&self) -> Option<usize> {
-        // The compiler is to see that it is one of them.
+        // `%` lets the compiler drop the bounds check.
         self.blamed.map(|cell| usize::from(cell) % FSR_COUNT)
     }
 
-    /// Takes a reading of all cells, mN. `loaded_mn` is the load of a grasp; `opened`: the motor has opened the
-    /// hand since it last closed it.
+    /// `loaded_mn`: load of a grasp. `opened`: the motor has opened the hand since it last closed it.
     pub fn step(&mut self, read_mn: [i32; FSR_COUNT], loaded_mn: i32, opened: bool) -> Cells {
         self.let_go(read_mn, opened);
         let cells = self.corrected(read_mn);
@@ -93,8 +84,7 @@ impl Drift {
         Cells::Known(cells)
     }
 
-    /// Estimates the cells' drift from this reading, mN. `still`: readings since the motor was driven. Call it once after
-    /// each reading, outside of the tick.
+    /// `still`: readings since the motor was driven. Call it once after each reading, outside of the tick.
     pub fn think(&mut self, read_mn: [i32; FSR_COUNT], loaded_mn: i32, still: u32) {
         let load_mn: i32 = self.corrected(read_mn).iter().sum();
         if load_mn < loaded_mn {
@@ -106,7 +96,6 @@ impl Drift {
         }
     }
 
-    /// The cells' forces without the known drift.
     fn corrected(&self, mut cells: [i32; FSR_COUNT]) -> [i32; FSR_COUNT] {
         if let Some(blamed) = self.blamed() {
             cells[blamed] -= SIGNS[blamed] * self.off_mn;
@@ -132,7 +121,6 @@ impl Drift {
         }
     }
 
-    /// Holds the cells against each other.
     fn contradict(&mut self, read_mn: [i32; FSR_COUNT], load_mn: i32) {
         if (0..FSR_COUNT).any(|n| read_mn[n] < CARRIES_MN && self.blamed() != Some(n)) {
             // A shear that lifts the element off a cell breaks the rule, too.
@@ -183,7 +171,6 @@ impl Drift {
         }
     }
 
-    /// Holds the load against what it was when the motor came to rest.
     fn sink(&mut self, load_mn: i32, still: u32) {
         if still < STILL_FOR {
             self.stood_at_mn = None;

@@ -1,38 +1,35 @@
-//! Friction of the grasp: it bounds S2 (Prosthesis, sections 4 and 5) and the look-ahead
-//! ([`Ahead`](super::Ahead)), and sizes the pulses.
+//! Friction of the grasp: bounds S2 (Prosthesis, sections 4 and 5) and the look-ahead, and sizes the pulses.
 //!
-//! "In the 'before sliding' situation a significant increment of the Ft/Fn ratio has been observed"; it rises to mu_s and
-//! falls as sliding starts. A stroke over a surface shows that peak, as often as the finger sticks and slides; S2 is set
-//! below the smallest one seen.
-//!
-//! A grasp shows it, too: Ft is never above mu Fn, whether the object holds or slides. So friction is at least the highest ratio
-//! that has lasted for 50 ms. S2 is set below that as below a stroke's, if it is higher, until the finger lets go or a muscle is active.
-//! No object slips at a ratio below [`LEAST_PERMILLE`], and few do below [`UNLIKELY_PERMILLE`]: there no kind of sensor alone is believed.
-//! Once slip was answered in a grasp, slip at the ratio that its pulse aimed at is likely, too: an object that turns about the pads has
-//! less shear than it has load.
+//! Ft/Fn rises to mu_s and falls as sliding starts. A stroke over a surface shows that peak; S2 is set below
+//! the smallest one. A grasp shows it too: friction is at least the highest ratio that has lasted for 50 ms,
+//! until the finger lets go or a muscle is active. Below [`LEAST_PERMILLE`] nothing slips, below
+//! [`UNLIKELY_PERMILLE`] few objects do: there no kind of sensor alone is believed, unless slip was answered
+//! in this grasp.
 
+use tenax_hal_shim::detector::{DetectorHealth, DetectorId, Direction};
 use tenax_hal_shim::wire::Forces;
 
+use crate::detectors::{Description, Detector, Said, Sensed, confidence};
 use crate::force::settings::FrictionConfig;
 use crate::grip::lacks::{Lacks, Slides};
 use crate::latest;
 
-/// Part of S2 below which the warning ends, per mille: beyond the ratio's noise, and not so far that a load which falls
-/// again is answered once more.
+/// Part of S2 below which the warning ends, per mille: beyond the ratio's noise, yet near enough that a load
+/// which falls again is not answered twice.
 const OFF_PERMILLE: u32 = 960;
-/// A ratio that has fallen below this part of its peak, per mille, has slid.
+/// Part of its peak below which a ratio has slid, per mille.
 const FALL_PERMILLE: u32 = 850;
-/// The least friction, per mille: nothing that a finger holds slips at a smaller ratio. A dry hand on metal has 0.1 or more, a wet one on
-/// glass 0.15, and what slides keeps 0.6 of it.
+/// Least friction, per mille. A dry hand on metal has 0.1 or more, a wet one on glass 0.15, and what slides
+/// keeps 0.6 of it.
 pub const LEAST_PERMILLE: u16 = 70;
-/// The least static friction of a wet hand on glass, 0.15, less the force sensor's error, per mille.
+/// Static friction of a wet hand on glass, 0.15, less the force sensor's error, per mille.
 const UNLIKELY_PERMILLE: u16 = 130;
-/// The smallest ratio that is taken for friction where one is measured or learned, per mille: noise at the touch is none.
+/// Least ratio that counts as friction where one is measured or learned, per mille: less is noise at the
+/// touch.
 pub const FOUND_PERMILLE: u16 = 100;
 /// Readings for which a ratio has to last, 50 ms.
 const SHOWN_FOR: usize = 4;
 
-/// A stroke in progress.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Stroke {
     highest: u16,
@@ -52,16 +49,13 @@ impl Stroke {
     }
 }
 
-/// Result of a stroke.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Measured {
-    /// Static friction: the smallest of the stroke's peaks of Ft/Fn, per mille.
+    /// Smallest of the stroke's peaks of Ft/Fn, per mille.
     pub mu_s_permille: u16,
-    /// S2 from it, per mille.
     pub s2_permille: u16,
 }
 
-/// Lower bound of friction in this grasp: the highest ratio that has lasted.
 #[derive(Clone, Copy, Debug, Default)]
 struct Shown {
     before: [u16; SHOWN_FOR - 1],
@@ -76,36 +70,36 @@ impl Shown {
     }
 }
 
-/// The grip that a pulse aims at, as a part of what friction needs, per mille: after a warning, and after slip, whose object has to be
-/// stopped, too. Chosen on the shipped scenes, seeds 1 to 3, and the default one, seeds 1 to 6.
+/// Grip that a pulse aims at, as a part of what friction needs, per mille: after a warning; after slip, whose
+/// object has to be stopped too. Chosen on the shipped scenes, seeds 1 to 3, and the default one, seeds 1 to
+/// 6.
 const WARNED_PERMILLE: i32 = 1_250;
 const SLIPPED_PERMILLE: i32 = 1_350;
-/// As long as the ratio does not show the friction of what slides, which may be lower by a sixth.
+/// While the ratio does not show the friction of what slides, which may be lower by a sixth.
 const SLIPS_PERMILLE: i32 = SLIPPED_PERMILLE * 6 / 5;
-/// Readings over which a growing load is extrapolated: it is expected to grow as much again within the next 100 ms.
+/// Readings over which a growing load is extrapolated: 100 ms.
 const CARRIED_FOR: usize = 8;
 
-/// S2 as a detector, the stroke, and the friction of the grasp.
 #[derive(Clone, Debug, Default)]
 pub struct FrictionDetector {
     s2: bool,
     ratio_permille: Option<u16>,
     stroke: Option<Stroke>,
     shown: Shown,
-    /// The ratio at which the object slid when slip was reported last, per mille; None before.
+    /// Ratio at which the object slid when slip was reported last, per mille.
     slid: Option<u16>,
-    /// Ft of the last 100 ms in which the hand stood still, mN, the newest first. A sliding object carries less than its load.
+    /// Ft of the last 100 ms in which the hand stood still, mN, the newest first. A sliding object carries
+    /// less than its load.
     carried: Option<[i32; CARRIED_FOR]>,
     /// Readings since the hand moved.
     still: u8,
-    /// See [`is_slip_unlikely`](Self::is_slip_unlikely).
     unlikely: bool,
-    /// The least ratio that a pulse against slip aimed at in this grasp, per mille. None: no slip was answered.
+    /// Least ratio that a pulse against slip aimed at in this grasp, per mille. None: no slip was answered.
     aimed: Option<u16>,
 }
 
 impl FrictionDetector {
-    /// Takes Ft, mN, None while there is no ratio. `moves`: the reflex moves the hand. Call it before [`process`](Self::process).
+    /// `moves`: the reflex moves the hand. Call it before [`process`](Self::process).
     #[inline(never)]
     pub fn carry(&mut self, ft_mn: Option<i32>, moves: bool) {
         let Some(ft_mn) = ft_mn else {
@@ -119,7 +113,7 @@ impl FrictionDetector {
         }
     }
 
-    /// The missing force by this reading, mN: aim x Ft / friction - Fn, for slip and for a warning.
+    /// aim x Ft / friction - Fn, mN, for slip and for a warning.
     #[must_use]
     #[inline(never)]
     pub fn lacks(&mut self, config: &FrictionConfig, forces: &Forces, slides: Slides) -> Lacks {
@@ -144,7 +138,7 @@ impl FrictionDetector {
         self.slid = match slides {
             Slides::Unknown => self.slid,
             Slides::Now => Some(self.slid.map_or(ratio, |slid| ratio.min(slid.into())) as u16),
-            // The pulse was over before the quadrants showed it. What breaks loose bears more than what slides.
+            // The pulse was over before the quadrants showed it; static friction is above the sliding one.
             Slides::Again => {
                 let least = self.shown.before.iter().fold(ratio, |least, &before| least.min(before.into()));
                 Some(self.slid.unwrap_or(least as u16))
@@ -155,7 +149,7 @@ impl FrictionDetector {
         Lacks { slip_mn, warning_mn, by_s2: self.s2 }
     }
 
-    /// Takes Ft/Fn, per mille, None while there is none. Gives whether S2 warns.
+    /// Ft/Fn, per mille, None while there is none. True: S2 warns.
     pub fn process(&mut self, config: &FrictionConfig, ratio_permille: Option<u16>) -> bool {
         self.ratio_permille = ratio_permille;
         let Some(ratio) = ratio_permille else {
@@ -164,9 +158,9 @@ impl FrictionDetector {
             return false;
         };
         let likely = self.aimed.map_or(UNLIKELY_PERMILLE, |aimed| aimed.min(UNLIKELY_PERMILLE));
-        // What has just begun to slide has lost shear.
+        // An object that has just begun to slide has lost shear.
         let of_late = self.shown.before.iter().fold(ratio, |most, &before| most.max(before));
-        // What comes to be pulled at has not shown all of its shear yet.
+        // An object that begins to be pulled has not shown all of its shear yet.
         let [.., oldest] = self.shown.before;
         let grown = if oldest > 0 { ratio.saturating_sub(oldest) } else { 0 };
         self.unlikely = ratio < LEAST_PERMILLE || of_late + grown < likely;
@@ -179,24 +173,22 @@ impl FrictionDetector {
         self.s2
     }
 
-    /// Whether slip is so unlikely at the last Ft/Fn that no kind of sensor alone is believed.
+    /// No single kind of sensor is believed about slip at the last Ft/Fn.
     pub const fn is_slip_unlikely(&self) -> bool {
         self.unlikely
     }
 
     /// S2 in this grasp, per mille: as set or measured, or higher if the grasp has shown more friction.
-    #[must_use]
     pub fn s2_permille(&self, config: &FrictionConfig) -> u16 {
         let shown = u32::from(self.shown.highest) * u32::from(config.s2_of_mu_s_permille) / 1_000;
         config.s2_permille.max(shown as u16)
     }
 
-    /// Forgets the friction of this grasp: a muscle is active and changes the contact.
+    /// A muscle changes the contact: the friction of this grasp is unknown again.
     pub fn renew(&mut self) {
         (self.shown, self.slid, self.aimed) = (Shown::default(), None, None);
     }
 
-    /// A pulse against slip begins: the sliding friction is not known yet.
     pub fn slips(&mut self) {
         self.slid = None;
         if let Some(ratio) = self.ratio_permille {
@@ -205,26 +197,55 @@ impl FrictionDetector {
         }
     }
 
-    /// The ratio at which the object slid in this grasp, per mille, until slip is reported again. None: it has not slid.
+    /// Ratio at which the object slid in this grasp, per mille, until slip is reported again.
     pub const fn slid_permille(&self) -> Option<u16> {
         self.slid
     }
 
-    /// The last Ft/Fn, per mille, None while there is none.
     pub const fn ratio_permille(&self) -> Option<u16> {
         self.ratio_permille
     }
 
-    /// Begins to measure mu_s in a stroke; one that is under way starts anew.
     pub fn begin_stroke(&mut self) {
         self.stroke = Some(Stroke::default());
     }
 
-    /// Ends the stroke. Gives what it measured, None if the finger never slid. The caller sets S2.
+    /// None if the finger never slid. The caller sets S2.
     pub fn end_stroke(&mut self, config: &FrictionConfig) -> Option<Measured> {
         let mu_s_permille = self.stroke.take()?.mu_s?;
         let s2 = u32::from(mu_s_permille) * u32::from(config.s2_of_mu_s_permille) / 1_000;
         Some(Measured { mu_s_permille, s2_permille: s2.min(u32::from(u16::MAX)) as u16 })
+    }
+}
+
+impl Detector for FrictionDetector {
+    const ID: DetectorId = DetectorId::S2;
+    type Config = FrictionConfig;
+
+    fn step(&mut self, config: &FrictionConfig, sensed: &Sensed<'_>) -> Option<Said> {
+        if sensed.wearer {
+            self.renew();
+        }
+        let ratio = match sensed.forces {
+            Some(_) if !sensed.forces_are_new => return None,
+            Some(forces) => forces.ratio_permille,
+            None => None,
+        };
+        self.carry(ratio.and(sensed.forces).map(|forces| forces.ft_mn), sensed.moves);
+        Some(Said { slip: false, incipient: self.process(config, ratio) })
+    }
+
+    fn describe(&self, config: &FrictionConfig) -> Description {
+        let ratio = self.ratio_permille().map_or(0, i32::from);
+        Description {
+            confidence_permille: confidence(ratio, config.s2_permille.into()),
+            direction: Direction::Unknown,
+            health: match self.ratio_permille() {
+                Some(_) => DetectorHealth::Working,
+                None => DetectorHealth::Blind,
+            },
+            raw: ratio,
+        }
     }
 }
 
@@ -251,9 +272,7 @@ mod tests {
             detector.is_slip_unlikely()
         };
         assert_eq!([129, 130, 300].map(|ratio| unlikely(&mut detector, ratio)), [true, false, false]);
-        // Three readings after it stuck. As much again is expected of shear that grows.
         assert_eq!([70, 69, 70, 70].map(|ratio| unlikely(&mut detector, ratio)), [false, true, false, true]);
-        // Answered at 0.135, aimed at 0.1.
         unlikely(&mut detector, 135);
         detector.slips();
         let after = [99; 5].map(|ratio| unlikely(&mut detector, ratio));
@@ -284,7 +303,6 @@ mod tests {
         assert_eq!(detector.s2_permille(&CONFIG), 300);
     }
 
-    /// What is lacking after these readings of a load, mN, and their shear.
     fn lacks_as(slides: Slides, load_mn: i32, shears_mn: &[i32]) -> Lacks {
         let mut detector = FrictionDetector::default();
         let mut lacks = Lacks::default();
@@ -307,7 +325,6 @@ mod tests {
         let held = lacks(10_000, &[3_100; 20]);
         assert!(held.by_s2);
         assert_eq!(held.warning_mn, Some(3_100 * WARNED_PERMILLE / 300 - 10_000));
-        // A load that grows by 0.2 N in 100 ms is expected to do so again.
         let grows: [i32; 20] = core::array::from_fn(|n| 2_600 + n as i32 * 200 / 7);
         let expected = (grows[19] + grows[19] - grows[12]) * WARNED_PERMILLE / 300 - 10_000;
         assert!((expected - 10..=expected + 10).contains(&lacks(10_000, &grows).warning_mn.unwrap()));
@@ -319,12 +336,10 @@ mod tests {
         // Friction falls from above 0.27 to 0.2: what is carried falls, the load does not.
         let shears: [i32; 20] = core::array::from_fn(|n| if n < 17 { 2_700 } else { 2_000 });
         assert_eq!(lacks(10_000, &shears).slip_mn, Some(2_700 * SLIPPED_PERMILLE / 200 - 10_000));
-        // Before the quadrants show it, it may be lower still; what has come to rest carries less than it could.
         let fresh = lacks_as(Slides::Unknown, 10_000, &shears).slip_mn;
         assert_eq!(fresh, Some(2_700 * SLIPS_PERMILLE / 200 - 10_000));
         let rests: [i32; 20] = core::array::from_fn(|n| if n < 19 { shears[n] } else { 1_800 });
         assert_eq!(lacks_as(Slides::Again, 10_000, &rests).slip_mn, lacks(10_000, &shears).slip_mn);
-        // A load that comes at once may grow further.
         let shears: [i32; 20] = core::array::from_fn(|n| if n < 17 { 2_700 } else { 3_000 });
         assert_eq!(lacks(10_000, &shears).slip_mn, Some(3_300 * SLIPPED_PERMILLE / 300 - 10_000));
     }
@@ -349,16 +364,6 @@ mod tests {
             detector.process(&CONFIG, Some(ratio));
         }
         assert_eq!(detector.end_stroke(&CONFIG), Some(Measured { mu_s_permille: 490, s2_permille: 392 }));
-        assert_eq!(detector.end_stroke(&CONFIG), None);
-    }
-
-    #[test]
-    fn a_stroke_that_never_slid_measures_nothing() {
-        let mut detector = FrictionDetector::default();
-        detector.begin_stroke();
-        for ratio in [20, 200, 400, 410, 400, 50] {
-            detector.process(&CONFIG, Some(ratio).filter(|&r| r > 100));
-        }
         assert_eq!(detector.end_stroke(&CONFIG), None);
     }
 
@@ -393,7 +398,6 @@ mod tests {
         assert_eq!(slid, [Some(250), Some(200), Some(200)]);
         detector.slips();
         assert_eq!(detector.slid_permille(), None);
-        // The pulse was over before the quadrants showed it: the least of the last readings.
         assert_eq!(slides(&mut detector, Slides::Again, 230), Some(200));
         assert_eq!(slides(&mut detector, Slides::Unknown, 100), Some(200));
     }

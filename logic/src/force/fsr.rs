@@ -1,13 +1,10 @@
-//! From the voltage of a force sensing resistor's quadrant back to its force.
-//!
-//! The front end's power law (`front_end::fsr_mv`) is inverted by a table: force in mN at each of [`KNOTS`] voltages
-//! above rest, straight lines between. The table's steps grow with the voltage, so that the relative error stays even.
-//! A test compares it with `f64` over the whole range and another regenerates every entry.
+//! Voltage of a force sensing resistor's quadrant to force: the inverse of `front_end::fsr_mv` as a table of
+//! [`KNOTS`], straight lines between; error below 2 % or 6 mN.
 
 use tenax_hal_shim::channel::{REFERENCE_MV, SAMPLE_MAX};
 use tenax_hal_shim::front_end::FSR_REST_MV;
 
-/// Voltage above rest, uV, and force, mN, at each knot: `1000 (mv / 180)^(1 / 0.9)`.
+/// Voltage above rest, uV, and force, mN: `1000 (mv / 180)^(1 / 0.9)`.
 pub const KNOTS: [(i32, i32); 14] = [
     (0, 0),
     (10_000, 40),
@@ -25,16 +22,14 @@ pub const KNOTS: [(i32, i32); 14] = [
     (3_100_000, 23_628),
 ];
 
-/// Microvolts above the unloaded voltage. Rounds down; negative below rest.
-#[must_use]
+/// Rounds down; negative below rest.
 pub fn uv_above_rest(sample: u16) -> i32 {
     const UV_MAX: u64 = REFERENCE_MV as u64 * 1_000;
     let uv = u64::from(sample) * UV_MAX / SAMPLE_MAX as u64;
     uv as i32 - FSR_REST_MV as i32 * 1_000
 }
 
-/// Force on a quadrant, mN, from its voltage above rest, uV. Below rest it is 0; above the last knot, the last force.
-#[must_use]
+/// Force on a quadrant, mN, from its voltage above rest, uV; 0 below rest, the last knot's force above it.
 pub fn force_mn(uv: i32) -> i32 {
     let mut below = KNOTS[0];
     for knot in KNOTS {
@@ -53,8 +48,7 @@ pub fn force_mn(uv: i32) -> i32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use tenax_hal_shim::channel::sample_from_mv;
-    use tenax_hal_shim::front_end::{FSR_EXPONENT, FSR_MV_AT_1N, fsr_mv};
+    use tenax_hal_shim::front_end::{FSR_EXPONENT, FSR_MV_AT_1N};
 
     fn exact_mn(uv: f64) -> f64 {
         1e3 * (uv / 1e3 / FSR_MV_AT_1N).powf(1.0 / FSR_EXPONENT)
@@ -72,16 +66,6 @@ mod tests {
         for uv in (0..3_000_000).step_by(997) {
             let error = (f64::from(force_mn(uv)) - exact_mn(f64::from(uv))).abs();
             assert!(error < 6.0_f64.max(0.02 * exact_mn(f64::from(uv))), "{error} mN at {uv} uV");
-        }
-    }
-
-    #[test]
-    fn newtons_survive_the_front_end_and_the_converter() {
-        for tenths in 1..=150 {
-            let force_n = f64::from(tenths) / 10.0;
-            let sample = sample_from_mv(fsr_mv(force_n, f64::powf).round() as u32);
-            let back = f64::from(force_mn(uv_above_rest(sample))) / 1e3;
-            assert!((back - force_n).abs() < 0.02 * force_n + 0.01, "{force_n} N read as {back} N");
         }
     }
 

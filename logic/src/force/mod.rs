@@ -1,9 +1,8 @@
-//! Normal and shear force from the four-quadrant force sensor, its drift, and warnings from their ratio: S2, the look-ahead, and the force
-//! that a warning may add.
+//! Normal and shear force from the four-quadrant force sensor, its drift, and warnings from their ratio (S2,
+//! look-ahead).
 
 mod ahead;
 mod asked;
-mod detector;
 pub mod drift;
 pub mod friction;
 pub mod fsr;

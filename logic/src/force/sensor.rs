@@ -1,14 +1,9 @@
-//! Normal and tangential force from the four quadrants, by the formulas of Prosthesis, section 4.
+//! Normal and tangential force from the four quadrants (Prosthesis, section 4).
 //!
-//! The paper's `Fn = sqrt(A^2 + B^2 + C^2 + D^2)` is kept, because its S2 is a threshold on the ratio that this Fn gives.
-//! It is **not** the normal force, which is the sum of the quadrants: under an even load it is half of the sum, under a
-//! tilt it is more. Scaled by two, as here, it is exact for an even load and `sqrt(1 + (Ft/P)^2)` too large under a
-//! shear along an axis: 4 % at a ratio of 0.3, 12 % at 0.5. So the ratio read here is `r / sqrt(1 + r^2)` for a true
-//! ratio r. Both grow together; a stroke that measures S2 measures it on the same scale.
-//!
-//! Decisions on a force (is the finger loaded, is the ceiling reached) use the load, the
-//! sum of the quadrants. A ratio is valid only if most quadrants carry a load: a single one,
-//! pressed by its own offset or a speck under the element, would read as a large shear.
+//! The paper's `Fn = sqrt(A^2 + B^2 + C^2 + D^2)`, scaled by two, is exact for an even load and `sqrt(1 +
+//! (Ft/P)^2)` too large under a shear along an axis, so a true ratio r reads `r / sqrt(1 + r^2)`. S2 is on
+//! this scale. Decisions on a force use the load, the sum of the quadrants. A ratio is valid only if most
+//! quadrants carry a load: a speck under one would read as a large shear.
 
 use tenax_hal_shim::channel::FSR_COUNT;
 use tenax_hal_shim::wire::Forces;
@@ -19,28 +14,25 @@ use super::fsr::{force_mn, uv_above_rest};
 /// Largest zero of a quadrant, uV above rest: more is a load, not an offset.
 pub const ZERO_LIMIT_UV: i32 = 60_000;
 
-/// A quadrant that carries this much carries a part of the load, mN: more than its noise, and a fortieth of the least load.
+/// Least force of a quadrant that carries a part of the load, mN: more than its noise.
 pub(super) const CARRIES_MN: i32 = 15;
-/// Quadrants that have to. A shear along a diagonal may unload one.
+/// Quadrants that have to carry a load. A shear along a diagonal may unload one.
 const AGREEING: usize = 3;
-/// While the hand is open a zero follows its readings over so many of them: 0.8 s.
+/// Readings over which a zero follows while the hand is open: 0.8 s.
 const FOLLOWED_IN: i32 = 64;
 
-/// The force sensor: calibrated zeros of its quadrants, and their drift.
 #[derive(Clone, Debug, Default)]
 pub struct ForceSensor {
-    /// Calibrated, and kept through a power cut.
     zero_uv: [i32; FSR_COUNT],
-    /// Their drift since, as far as an open hand shows it, uV.
+    /// Drift of the zeros that an open hand shows, uV.
     drift_uv: [i32; FSR_COUNT],
     last_uv: [i32; FSR_COUNT],
-    /// Their drift in this grasp.
     drift: Drift,
 }
 
 impl ForceSensor {
-    /// Forces from one 14-bit sample of each quadrant A, B, C, D. `loaded_mn`: load from which Ft/Fn is valid. `opened`: the motor has
-    /// opened the hand since it last closed it. None once the quadrants have drifted too far.
+    /// One 14-bit sample of each quadrant A, B, C, D. `loaded_mn`: load from which Ft/Fn is valid. `opened`:
+    /// the motor has opened the hand since it last closed it. None once the quadrants have drifted too far.
     pub fn process(&mut self, samples: [u16; FSR_COUNT], loaded_mn: i32, opened: bool) -> Option<Forces> {
         self.last_uv = samples.map(uv_above_rest);
         match self.drift.step(self.quadrants(), loaded_mn, opened) {
@@ -49,23 +41,22 @@ impl ForceSensor {
         }
     }
 
-    /// The quadrant (0 to 3) whose reading contradicts the other three. None if none does.
+    /// Quadrant (0 to 3) whose reading contradicts the other three.
     pub fn blamed(&self) -> Option<usize> {
         self.drift.blamed()
     }
 
-    /// Estimates the drift, once after each reading. `still`: readings since the motor was driven.
+    /// Once after each reading. `still`: readings since the motor was driven.
     pub fn think(&mut self, loaded_mn: i32, still: u32) {
         self.drift.think(self.quadrants(), loaded_mn, still);
     }
 
-    /// The quadrants' last forces, mN.
+    /// mN.
     fn quadrants(&self) -> [i32; FSR_COUNT] {
         core::array::from_fn(|n| force_mn(self.last_uv[n] - self.zero_uv[n] - self.drift_uv[n]))
     }
 
-    /// Takes the last readings as zero; false, and nothing changed, if a quadrant is further from its calibrated zero
-    /// than any offset.
+    /// False, and nothing changed, if a quadrant is beyond [`ZERO_LIMIT_UV`].
     #[must_use]
     pub fn zero(&mut self) -> bool {
         let unloaded = self.last_uv.iter().all(|uv| uv.abs() <= ZERO_LIMIT_UV);
@@ -77,8 +68,7 @@ impl ForceSensor {
         unloaded
     }
 
-    /// The hand is surely open: the zeros follow the quadrants' readings within [`ZERO_LIMIT_UV`].
-    /// A larger reading is a load.
+    /// Call it while the hand is surely open. A reading beyond [`ZERO_LIMIT_UV`] is a load.
     pub fn follow(&mut self) {
         for ((drift, zero), &uv) in self.drift_uv.iter_mut().zip(&self.zero_uv).zip(&self.last_uv) {
             if uv.abs() <= ZERO_LIMIT_UV {
@@ -89,19 +79,17 @@ impl ForceSensor {
         }
     }
 
-    /// The zeros, uV above rest.
     pub const fn zero_uv(&self) -> &[i32; FSR_COUNT] {
         &self.zero_uv
     }
 
-    /// Restores zeros of quadrants A to D, uV above rest. The caller has checked that none is beyond [`ZERO_LIMIT_UV`].
+    /// uV above rest; the caller has checked [`ZERO_LIMIT_UV`].
     pub const fn restore_zero(&mut self, zero_uv: [i32; FSR_COUNT]) {
         self.zero_uv = zero_uv;
     }
 }
 
-/// Forces (Prosthesis, section 4) of quadrants A to D, each 0 to 24 000 mN. Ft/Fn is None for a load below `loaded_mn`.
-#[must_use]
+/// Prosthesis, section 4. Quadrants A to D, each 0 to 24 000 mN. Ft/Fn is None for a load below `loaded_mn`.
 pub fn forces([a, b, c, d]: [i32; FSR_COUNT], loaded_mn: i32) -> Forces {
     let fn_mn = 2 * root([a, b, c, d]);
     let fx_mn = (a + b) - (c + d);
@@ -114,9 +102,9 @@ pub fn forces([a, b, c, d]: [i32; FSR_COUNT], loaded_mn: i32) -> Forces {
     Forces { fn_mn, fx_mn, fy_mn, ft_mn, load_mn, ratio_permille }
 }
 
-/// Root of the sum of squares, rounded down: core's integer root, exact, where micromath's is off by up to 6.1 %.
+/// Root of the sum of squares, rounded down; exact, where micromath's is off by up to 6.1 %.
 fn root<const N: usize>(values: [i32; N]) -> i32 {
-    // Of a number without a sign: core's root of one that has it would panic below 0.
+    // Unsigned: core's root of a signed number would panic below 0.
     let squares: u64 = values.iter().map(|&value| u64::from(value.unsigned_abs()).pow(2)).sum();
     squares.isqrt() as i32
 }
@@ -154,12 +142,6 @@ mod tests {
             let expected = true_ratio / true_ratio.hypot(1.0);
             assert!((read - expected).abs() < 0.02, "{normal} N, {shear} N: {read} for {expected}");
         }
-    }
-
-    #[test]
-    fn an_unloaded_finger_has_no_ratio() {
-        assert_eq!(forces([100, 0, 0, 0], 600).ratio_permille, None);
-        assert_eq!(forces([0; 4], 0).ratio_permille, None);
     }
 
     #[test]

@@ -2,23 +2,20 @@
 
 use crate::setting::settings;
 
-/// Thresholds of the friction detector.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FrictionConfig {
-    /// S2: threshold of Ft/Fn above which it warns, per mille, until a stroke has measured it.
     pub s2_permille: u16,
-    /// The part of a measured mu_s that becomes S2, per mille.
     pub s2_of_mu_s_permille: u16,
-    /// Load from which the finger counts as loaded, mN: below, noise divided by a small Fn would be a large ratio.
+    /// Below it, noise divided by a small Fn would be a large ratio, mN.
     pub loaded_mn: i32,
 }
 
 settings! {
     FrictionConfig:
     /// S2: threshold of Ft/Fn above which it warns, until a stroke measures it
-    2 S2 "s2-permille" "per mille" [290, 310, trusted 150, 1_500] = 300 => Number(s2_permille);
+    2 S2 "s2-permille" "per mille" [150, 1_500] = 300 => Number(s2_permille);
     /// S2 from a stroke or grasp: this part of the friction that was measured
     9 S2OfMuS "s2-of-mu-s-permille" "per mille" [300, 950] = 800 => Number(s2_of_mu_s_permille);
     /// Normal force from which the finger counts as loaded
-    10 Loaded "loaded-mn" "mN" [300, 700, trusted 300, 2_000] = 600 => Number(loaded_mn);
+    10 Loaded "loaded-mn" "mN" [300, 2_000] = 600 => Number(loaded_mn);
 }

@@ -67,7 +67,6 @@ fn the_ratio_is_friction_once_the_quadrants_show_it_and_for_a_while_after_a_row(
     }
 }
 
-/// A reflex that has closed by so much duty, in a grasp that has been quiet for long enough to open at the next reading.
 fn relaxing() -> Reflex {
     let mut reflex = Reflex::default();
     reflex.feel(GripMode::Watch, Some(3_000), Lacks::default());

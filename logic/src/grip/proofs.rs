@@ -46,7 +46,6 @@ fn at_the_ceiling_nothing_closes_whatever_state_the_reflex_is_in() {
     }
 }
 
-/// What decides how a frame goes on, the mode first by its number, and the frames that closed since a muscle was last active.
 type State = (usize, u32, u32, u32);
 /// The modes by their numbers.
 const MODES: [GripMode; 6] = [
@@ -58,8 +57,6 @@ const MODES: [GripMode; 6] = [
     GripMode::Settle,
 ];
 
-/// Every state that some history leads to. In each frame any causes come in any order that the mode has a step for, but for what
-/// [`Fingertip`](crate::fingertip::Fingertip) sees to: a detector is asked only where the reflex may close, and a pulse that is over ends.
 fn reachable(config: &GripConfig, grips: &[Grip], bound: bool) -> BTreeSet<State> {
     const ID: DetectorId = DetectorId::S1;
     let causes = [
@@ -99,7 +96,6 @@ fn reachable(config: &GripConfig, grips: &[Grip], bound: bool) -> BTreeSet<State
                 reached.push((mode as usize, blind, elapsed.min(longest), closed));
             }
         }
-        // A muscle.
         reached.push((GripMode::Wearer as usize, 0, 0, 0));
         open.extend(
             reached.into_iter().filter(|state| state.3 <= config.blind_frames + 1 && known.insert(*state)),

@@ -1,42 +1,35 @@
-//! Releases the force that the reflex added, if `relax-choice` allows it.
-//!
-//! Only while no source moves the hand and no detector has reported anything for [`QUIET_READINGS`]; only down to the load that the friction
-//! at which this object slid needs; never below the load that the hand was closed to, and never by more travel than the reflex closed. A step
-//! is small and waits for its effect. A report ends it: the reflex answers as always, and the load before the step is kept from then on.
+//! Release of the force that the reflex added, if `relax-choice` allows it: after [`QUIET_READINGS`] without
+//! a report, in small steps, down to the load that the friction of sliding needs, never below the load that
+//! the hand was closed to, and never by more travel than the reflex closed.
 
 use super::stiffness::Stiffness;
 
-/// Readings of 12.5 ms without a report, 5 s.
+/// Readings without a report before a release: 5 s.
 const QUIET_READINGS: u16 = 400;
 /// Readings between two steps, 0.25 s: a step's travel, the motor's dead time, and the force that follows.
 const STEP_READINGS: u16 = 20;
-/// The greatest step, mN, and the least that is worth one.
+/// Largest step, mN, and the least that is worth one.
 const STEP_MN: i32 = 200;
 const LEAST_MN: i32 = 100;
-/// The load that is kept, as a part of what the friction of sliding needs, per mille: an object that is pulled loose comes to rest by itself.
+/// Load that is kept, as a part of what the friction of sliding needs, per mille: an object that is pulled
+/// loose comes to rest by itself.
 const KEPT_PERMILLE: i32 = 1_050;
-/// Duty at which the hand opens, per mille.
 const DUTY_PERMILLE: u16 = 100;
 
-/// One reading of the force sensor, with the friction that is known.
 #[derive(Clone, Copy, Debug)]
 pub struct Reading {
-    /// The load, mN.
     pub load_mn: i32,
-    /// The shear that it carries, mN.
     pub ft_mn: i32,
-    /// The friction at which the object slid in this grasp, per mille. None: it has not.
+    /// Friction at which the object slid in this grasp, per mille.
     pub slid_permille: Option<u16>,
 }
 
-/// How much of the reflex's closing may be released, and what is left of the present step.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Relax {
-    /// The load that the hand was closed to, or that it had before a step that a detector answered, mN. None: not known yet.
+    /// Load that the hand was closed to, or that it had before a step that a detector answered, mN.
     floor_mn: Option<i32>,
-    /// The load before the last step, mN.
     before_mn: i32,
-    /// The greatest shear of the last seconds and of those before, mN.
+    /// Greatest shear of the last seconds and of those before, mN.
     most_mn: [i32; 2],
     quiet: u16,
     /// Travel that the reflex has closed and not released, per mille of duty times frames.
@@ -46,25 +39,23 @@ pub struct Relax {
 }
 
 impl Relax {
-    /// Ends the grasp: the muscles, the line or a behaviour moves the hand, or it holds nothing.
     pub fn forget(&mut self) {
         *self = Self::default();
     }
 
-    /// Notes that the reflex closes in this frame at this duty (0 to 1000 per mille): so much may be released later.
     pub const fn closes(&mut self, duty_permille: u16) {
         self.closed = self.closed.saturating_add(duty_permille as u32);
         self.left = 0;
     }
 
-    /// Ends a release step. Call it when a detector reports slip or a warning. The load before the last step becomes
-    /// the floor if it is the higher one: the step went too far.
+    /// Call it when a detector reports slip or a warning. The load before the last step becomes the floor:
+    /// the step went too far.
     pub fn hear(&mut self) {
         self.floor_mn = self.floor_mn.map(|floor_mn| floor_mn.max(self.before_mn));
         (self.quiet, self.left) = (0, 0);
     }
 
-    /// Takes a reading while no source moves the hand, and may begin a step. Call it once a slow frame.
+    /// Call it once a slow frame while no source moves the hand.
     #[inline(never)]
     pub fn feel(&mut self, reading: &Reading, stiffness: &Stiffness) {
         let Reading { load_mn, ft_mn, slid_permille } = *reading;
@@ -89,12 +80,11 @@ impl Relax {
         }
     }
 
-    /// Whether a step is under way.
     pub const fn is_on(&self) -> bool {
         self.left > 0
     }
 
-    /// The duty at which the hand opens in this frame, per mille; 0 if it does not. Call it once a frame.
+    /// Duty of this frame, per mille; 0: none. Call it once a frame.
     pub fn opens(&mut self) -> u16 {
         let duty = (self.left.min(DUTY_PERMILLE.into())) as u16;
         self.left -= u32::from(duty);

@@ -1,32 +1,26 @@
-//! The stiffness of the grasp: force that closing adds, learned while the motor closes.
-//!
-//! Fingers that close at a steady speed raise the force at a steady rate, whatever the motor's dead time is: the stiffness of object, pad
-//! and linkage is that rate over the duty. The steepest rise of a closing is used, since the dead time flattens the others.
+//! Stiffness of the grasp, learned while the motor closes: the steepest rise of the force over the duty,
+//! since the motor's dead time flattens the others.
 
 use crate::latest;
 
 /// Readings over which a rise is taken, 37.5 ms: as long as a pulse, which a shorter span would see in parts.
 const SPAN: usize = 3;
-/// Readings back to which the motor's travel is known: 50 ms of dead time, and the span.
+/// Readings of travel that are kept: 50 ms of dead time, and the span.
 const KEPT: usize = 7;
-/// Readings for which the force does not yet show what the motor has travelled: a dead time of 30 ms, and the time of a reading.
+/// Readings in which the force does not show the travel yet: a dead time of 30 ms, and the time of a reading.
 const NOT_FELT: usize = 3;
-/// A rise below this is noise, mN.
 const NOISE_MN: i32 = 60;
-/// Travel below which no rise tells anything: 1.5 ms at full duty.
+/// Least travel whose rise tells anything: 1.5 ms at full duty.
 const TRAVEL_MIN: u32 = 3_000;
-/// Fraction bits of a stiffness.
 const FRACTION: u32 = 4;
-/// Upper limit of the stiffness, mN a frame at full duty: 4 N.
+/// 4 N a frame at full duty.
 const MOST: u32 = 4_000 << FRACTION;
 
-/// The stiffness of the grasp: the force that closing adds for the motor's travel. It is learned from readings of the
-/// load while the motor closes. Travel is in per mille of duty times frames.
+/// Travel is in per mille of duty times frames.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Stiffness {
     /// Force that a frame at full duty adds, mN with [`FRACTION`] bits; 0 before the first closing.
     mn_a_frame: u32,
-    /// The largest stiffness of this closing, in the same unit.
     steepest: u32,
     /// Travel of this reading's time, and of those before, the newest first.
     travel: u32,
@@ -35,24 +29,22 @@ pub struct Stiffness {
 }
 
 impl Stiffness {
-    /// Notes that the motor closes in this frame at this duty, 0 to 1000 per mille.
     pub const fn close(&mut self, duty_permille: u16) {
         self.travel += duty_permille as u32;
     }
 
-    /// Takes a reading of the load, mN; None while nothing is held. Call it once a slow frame.
+    /// mN; None while nothing is held. Call it once a slow frame.
     #[inline(never)]
     pub fn feel(&mut self, load_mn: Option<i32>) {
         let travel = core::mem::take(&mut self.travel);
         latest::push(&mut self.before, travel);
         let Some(load_mn) = load_mn else {
-            // What is held next is something else.
             (self.mn_a_frame, self.steepest, self.loads_mn) = (0, 0, [0; SPAN]);
             return;
         };
         let [.., oldest_mn] = self.loads_mn;
         latest::push(&mut self.loads_mn, load_mn);
-        // Of three readings each, but not of the newest two: the motor has not moved yet, what changes the force is the object.
+        // The newest two are left out: the motor has not moved yet, the object changes the force.
         let most = self.before[2..].windows(SPAN).map(|travel| travel.iter().sum()).max().unwrap_or(0);
         let rise_mn = load_mn - oldest_mn;
         if oldest_mn > 0 && rise_mn > NOISE_MN && most >= TRAVEL_MIN {
@@ -62,14 +54,12 @@ impl Stiffness {
             self.mn_a_frame = self.mn_a_frame.max(self.steepest);
         }
         if self.before == [0; KEPT] && self.steepest > 0 {
-            // This closing is over: its own is the newest.
             self.mn_a_frame = core::mem::take(&mut self.steepest);
         }
     }
 
-    /// The motor's travel (per mille of duty times frames) that adds so much force, mN, less the travel that the force does not show yet.
-    /// None before a closing has shown the stiffness.
-    #[must_use]
+    /// Travel that adds this force, mN, less the travel that the force does not show yet. None before a
+    /// closing has shown the stiffness.
     pub fn travel_for(&self, lacks_mn: i32) -> Option<u32> {
         let coming: u32 = self.before[..NOT_FELT].iter().sum::<u32>() + self.travel;
         let lacks_mn = lacks_mn.clamp(0, 1 << 17).unsigned_abs();
@@ -83,7 +73,6 @@ impl Stiffness {
 mod tests {
     use super::*;
 
-    /// Closes at this duty for so many slow frames, each of which adds its part to the load `dead` slow frames later.
     fn closing(
         stiffness: &mut Stiffness,
         load_mn: &mut f64,
@@ -128,7 +117,6 @@ mod tests {
         closing(&mut stiffness, &mut load_mn, 500, 10, 45.0, 2);
         let travel = stiffness.travel_for(900).unwrap();
         assert!((19_000..=21_000).contains(&travel), "{travel}");
-        // What is on its way is taken off.
         (0..10).for_each(|_| stiffness.close(1_000));
         assert_eq!(stiffness.travel_for(900), Some(travel - 10_000));
         stiffness.feel(None);

@@ -3,19 +3,15 @@
 use tenax_hal_shim::wire::NETWORK_OUTPUTS;
 use tenax_hal_shim::words::{Code, Codes};
 
-/// How many lessons of one code may be ahead of its opposite's: 2 s.
+/// Largest lead of one code over its opposite, lessons: 2 s.
 const AHEAD_MAX: i16 = 2_000;
 
-/// Lessons of each code less those of its opposite.
-///
-/// Hebb's rule correlates: a constant input learns whichever code was taught longer, so every gauge
-/// that feels the grasp becomes an offset (`docs/hebbian.md`). A person does not lower as long as they lift, and the
-/// reflex ends slips early, so a code that is too far ahead is not taught until its opposite was.
+/// Lessons of each code less those of its opposite. Hebb's rule correlates: a constant input learns whichever
+/// code was taught longer, so a code that is too far ahead is not taught until its opposite was.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Balance([i16; NETWORK_OUTPUTS]);
 
 impl Balance {
-    /// The codes that are not too far ahead, counted.
     pub(super) fn admit(&mut self, codes: Codes) -> [Option<Code>; NETWORK_OUTPUTS] {
         let mut admitted = [None; NETWORK_OUTPUTS];
         for ((ahead, slot), code) in self.0.iter_mut().zip(&mut admitted).zip(codes) {

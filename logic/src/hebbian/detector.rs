@@ -1,27 +1,17 @@
-//! The Hebbian detector: films' envelopes and gauges' loads are the inputs of the network (Tada 2006), a camera
-//! teaches it over the serial line, and its outputs from touch alone report slip and warn of it.
+//! The Hebbian detector: films' envelopes and gauges' loads are the network's inputs, a camera teaches it
+//! over the line, and its outputs from touch alone report slip and warn of it.
 //!
-//! Every tick has an output; lessons are taught at 1 kHz, in every other tick, and the maxima rise in the ticks between,
-//! so that no tick does both. The network is used while it learns: its outputs never contain the teacher's
-//! codes (they are taken as 0).
-//!
-//! Slip is reported while the films' part of o1 is far enough below 0, for some ticks, on a finger that holds something,
-//! and not while an impact rings or the motor runs fast, or just did. The gauges' part is not used: it grows with
-//! the grip, which counts against slip and hides its beginning; and a gauge that dies would change
-//! o1 for good. An untaught network gives 0: no slip.
-//!
-//! Slip begins in one place of the contact and reaches the films there. An impact, a swing and the motor reach
-//! all films, so vibration of all films is slip only if it lasts.
-//!
-//! Ft/Fn that rises towards the ratio at which the camera saw slip ([`Ahead`]) is a warning. If the films' own noise is above the
-//! threshold, that noise is the threshold ([`noise`](super::noise)).
-//!
-//! The direction comes from the gauges alone: "vibration information only helps to detect micro slips, but not to detect
-//! the direction" (Tada 2006, section I), and a slip down that was louder than the slip up would be an offset of o2.
+//! Lessons are taught at 1 kHz, in every other tick; the maxima rise in the ticks between. Slip is reported
+//! while the films' part of o1 is far enough below 0 (and below the films' own noise,
+//! [`noise`](super::noise)) on a finger that holds something, and not while an impact rings or the motor runs
+//! fast. The gauges' part grows with the grip and is not used. Slip begins in one place: vibration of all
+//! films is slip only if it lasts. Ft/Fn near the learned ratio ([`Ahead`]) is a warning. The direction comes
+//! from the gauges alone (Tada 2006, section I).
 
 use core::ops::Range;
 
 use tenax_hal_shim::channel::PVDF_COUNT;
+use tenax_hal_shim::detector::{DetectorHealth, DetectorId, Direction};
 use tenax_hal_shim::schedule::{Job, slot_of};
 use tenax_hal_shim::wire::{Forces, NETWORK_OUTPUTS, NetworkState, RECEPTORS};
 use tenax_hal_shim::words::{Code, Codes, NoLesson};
@@ -32,16 +22,14 @@ use super::pvdf_part::PvdfPart;
 use super::{
     Activations, FingertipNetwork, Normaliser, NormaliserConfig, Output, Sense, Situation, Teacher, snapshot,
 };
+use crate::detectors::{Description, Detector, Said, Sensed, confidence};
 use crate::force::Ahead;
 use crate::hebbian::settings::HebbianConfig;
-use crate::strain::Gauges;
 
-/// Weights and maxima, to be saved.
 pub type Learned = snapshot::Contents<RECEPTORS, NETWORK_OUTPUTS>;
-/// Bytes of a saved network.
 pub const SNAPSHOT_LENGTH: usize = snapshot::length(RECEPTORS, NETWORK_OUTPUTS);
 
-/// Normalisation of the readings to activations. Films and gauges are samples (14 bits) with 4 fraction bits.
+/// Raw readings are samples (14 bits) with 4 fraction bits.
 pub static NORMALISER: NormaliserConfig<RECEPTORS> = NormaliserConfig {
     senses: {
         let mut senses = [Sense::Pressure; RECEPTORS];
@@ -66,59 +54,34 @@ pub static NORMALISER: NormaliserConfig<RECEPTORS> = NormaliserConfig {
     average_shift: 8,
 };
 
-/// Input of the detector in a tick.
-#[derive(Clone, Copy, Debug)]
-pub struct Felt<'a> {
-    /// Each film's envelope, 14-bit samples in Q16: 65536 is one sample.
-    pub envelopes: &'a [i32; PVDF_COUNT],
-    /// The gauges: loads in 1/16 of a sample.
-    pub gauges: &'a Gauges,
-    /// The gauge that was read in this tick, 0 to 11; another number: none.
-    pub gauge: usize,
-    /// Whether an impact rings, or the motor runs fast.
-    pub loud: bool,
-    /// Whether the finger is known to touch nothing.
-    pub unloaded: bool,
-    /// Whether the finger holds something, and whether the receptors are disturbed.
-    pub situation: Situation,
-}
-
-/// The films, and the gauges, among the receptors.
 const FILMS: Range<usize> = 0..PVDF_COUNT;
 const GAUGES: Range<usize> = PVDF_COUNT..RECEPTORS;
-/// 1, as an output.
 const ONE: i64 = 1 << 26;
-/// More films than this hear what is everywhere.
+/// Most films that hear slip that is not everywhere.
 const SOMEWHERE_MAX: usize = 6;
 
-/// The slot in which shear is judged: the tick after the forces are there, which has more room than theirs.
-pub const SHEAR_IS_JUDGED: u8 = slot_of(Job::Forces) + 1;
-/// The slot in which a cycle of the films' part ends: nobody needs it for more.
-const CYCLE_ENDS: usize = 20;
+/// The tick after the forces, which has more room than theirs.
+const SHEAR_IS_JUDGED: u8 = slot_of(Job::Forces) + 1;
+const CYCLE_ENDS: u8 = 20;
+/// Least value of the second output that tells a direction; 128 is 1.
+const DIRECTION_FROM: i8 = 16;
 
-/// The network with its teacher, inputs, look-ahead and verdict.
 #[derive(Clone, Debug)]
 pub struct HebbianDetector {
     normaliser: Normaliser<RECEPTORS>,
     network: FingertipNetwork,
     teacher: Teacher,
-    /// Activations; the films' are updated only during lessons.
     activations: Activations<RECEPTORS>,
     pvdf_part: PvdfPart,
     noise: Noise,
     shear: Ahead,
     outputs: [Output; NETWORK_OUTPUTS],
-    /// The gauges' part of each output, since the last of them was read.
     by_gauges: [i64; NETWORK_OUTPUTS],
-    /// The films' part of o1.
     by_films: i64,
-    /// Whether a weight has changed since the gains were computed.
     weights_changed: bool,
     since_loud_frames: u32,
     said_frames: u32,
-    /// Whether the films' part reports slip.
     films_say: bool,
-    /// Whether shear gives a warning, on a finger that holds something.
     warns: bool,
     lesson: Result<Codes, NoLesson>,
     odd: bool,
@@ -127,7 +90,6 @@ pub struct HebbianDetector {
 }
 
 impl Default for HebbianDetector {
-    /// A detector without readings and with weights of 0.
     fn default() -> Self {
         Self {
             normaliser: Normaliser::new(&NORMALISER),
@@ -153,37 +115,73 @@ impl Default for HebbianDetector {
     }
 }
 
+impl Detector for HebbianDetector {
+    const ID: DetectorId = DetectorId::Hebbian;
+    type Config = HebbianConfig;
+
+    fn step(&mut self, config: &HebbianConfig, sensed: &Sensed<'_>) -> Option<Said> {
+        if !sensed.valid {
+            self.lose();
+            return Some(Said::NOTHING);
+        }
+        if sensed.slot == SHEAR_IS_JUDGED {
+            self.foretell(config, sensed.forces, sensed.grasp, sensed.unloaded || sensed.wearer);
+        }
+        self.tick(config, sensed);
+        Some(Said { slip: self.slips(), incipient: self.warns() })
+    }
+
+    fn describe(&self, config: &HebbianConfig) -> Description {
+        let raw = (self.by_films * 1_000 / ONE) as i32;
+        let [_, o2] = self.outputs();
+        let direction = match (self.slips() | self.warns(), o2) {
+            (true, o2) if o2 <= -DIRECTION_FROM => Direction::Down,
+            (true, o2) if o2 >= DIRECTION_FROM => Direction::Up,
+            _ => Direction::Unknown,
+        };
+        let health =
+            if self.pvdf_part.is_quiet_known() { DetectorHealth::Working } else { DetectorHealth::Starting };
+        Description {
+            confidence_permille: confidence(-raw, config.slip_permille.into()),
+            direction,
+            health,
+            raw,
+        }
+    }
+}
+
 impl HebbianDetector {
-    /// Takes the input of one tick, learns if there is a lesson, and judges slip.
-    pub fn tick(&mut self, config: &HebbianConfig, felt: &Felt<'_>) {
+    fn tick(&mut self, config: &HebbianConfig, sensed: &Sensed<'_>) {
         let learns = self.lesson.is_ok();
         if self.pvdf_part.is_outdated() && !learns {
             self.know_gains();
         }
-        let mut by_films = self.pvdf_part.process(felt);
-        if let Some(load) = felt.gauges.load(felt.gauge) {
-            self.weigh(PVDF_COUNT + felt.gauge, load);
+        let mut by_films = self.pvdf_part.process(sensed);
+        // The first twelve slots read a gauge each.
+        let gauge = usize::from(sensed.slot);
+        if let Some(load) = sensed.strain.load(gauge) {
+            self.weigh(PVDF_COUNT + gauge, load);
         }
         if learns {
-            // Weights change with every lesson.
             self.feel_films();
             by_films = self.network.sum_of_parts(0, FILMS, &self.activations);
         }
         self.by_films = by_films;
         let [o1_by_gauges, o2_by_gauges] = self.by_gauges;
         self.outputs = [output(by_films + o1_by_gauges), output(o2_by_gauges)];
-        self.judge(config, felt, by_films);
+        self.judge(config, sensed, by_films);
         self.noise.add(by_films);
-        if felt.gauge == CYCLE_ENDS {
+        if sensed.slot == CYCLE_ENDS {
             let quiet = self.pvdf_part.is_quiet_known() && self.since_loud_frames >= config.loud_frames;
-            self.noise.end_cycle(felt.unloaded && quiet);
+            self.noise.end_cycle(sensed.unloaded && quiet);
         }
-        self.learn(config, felt, learns);
+        self.learn(config, sensed, learns);
     }
 
-    /// Takes forces, None without a number, in slot [`SHEAR_IS_JUDGED`], before its tick. `anew`: nothing is touched, or a muscle is active.
+    /// Call it in slot [`SHEAR_IS_JUDGED`], before its tick. `anew`: nothing is touched, or a muscle is
+    /// active.
     #[inline(never)]
-    pub fn foretell(&mut self, config: &HebbianConfig, forces: Option<&Forces>, grasp: bool, anew: bool) {
+    fn foretell(&mut self, config: &HebbianConfig, forces: Option<&Forces>, grasp: bool, anew: bool) {
         if anew {
             self.shear.renew();
         }
@@ -191,20 +189,18 @@ impl HebbianDetector {
         self.warns = grasp && self.shear.warns();
     }
 
-    /// The films' activations of now.
     #[inline(never)]
     fn feel_films(&mut self) {
         self.normaliser.renew(&NORMALISER, 0, self.pvdf_part.heard(), &mut self.activations);
     }
 
-    /// The gains after the last lesson.
     #[inline(never)]
     fn know_gains(&mut self) {
         let [to_o1, _] = self.network.weights();
         self.pvdf_part.renew(&to_o1, &self.normaliser.maxima());
     }
 
-    /// Takes a new reading of one gauge into the gauges' part. While no weight has changed, no other gauge's has.
+    /// While no weight has changed, no other gauge's part has.
     fn weigh(&mut self, receptor: usize, load: i32) {
         let before = self.network.parts_of(receptor, &self.activations);
         self.normaliser.renew(&NORMALISER, receptor, &[load], &mut self.activations);
@@ -219,7 +215,6 @@ impl HebbianDetector {
         }
     }
 
-    /// A frame was lost: there is no input.
     pub fn lose(&mut self) {
         self.outputs = [Output::default(); NETWORK_OUTPUTS];
         self.said_frames = 0;
@@ -229,12 +224,10 @@ impl HebbianDetector {
         self.pass();
     }
 
-    /// Takes the teacher's codes and the age of their picture, ms.
     pub fn teach(&mut self, config: &HebbianConfig, codes: Codes, age_ms: u16) {
         self.teacher.receive(&config.teacher, codes, age_ms);
     }
 
-    /// Resets weights and maxima.
     pub fn forget(&mut self) {
         self.normaliser.reset(&NORMALISER);
         self.network = FingertipNetwork::default();
@@ -247,43 +240,27 @@ impl HebbianDetector {
         self.updates = 0;
     }
 
-    /// Whether the films' part of o1 reports slip.
     pub const fn slips(&self) -> bool {
         self.films_say
     }
 
-    /// Whether the look-ahead of shear warns of slip.
     pub const fn warns(&self) -> bool {
         self.warns
     }
 
-    /// Outputs from touch alone, relative motion (o1) and direction (o2); 128 would be 1.
+    /// Relative motion (o1) and direction (o2) from touch alone; 128 is 1.
     pub fn outputs(&self) -> [i8; NETWORK_OUTPUTS] {
         self.outputs.map(|output| (output.into_bits() >> 19).clamp(-128, 127) as i8)
     }
 
-    /// The PVDF part of o1, per mille.
-    pub const fn by_films_permille(&self) -> i32 {
-        (self.by_films * 1_000 / ONE) as i32
-    }
-
-    /// Whether it has seen the finger unloaded, so that it can tell hum from slip.
-    pub const fn is_quiet_known(&self) -> bool {
-        self.pvdf_part.is_quiet_known()
-    }
-
-    /// The codes of the present lesson, or why there is none.
     pub const fn lesson(&self) -> Result<Codes, NoLesson> {
         self.lesson
     }
 
-    /// Updates of the weights since the start or the last [`forget`](Self::forget).
     pub const fn updates(&self) -> u32 {
         self.updates
     }
 
-    /// Snapshot for telemetry at this frame: weights, activations, age of the teacher's picture, lesson.
-    #[must_use]
     pub fn state(&self, frame: u32) -> NetworkState {
         let mut activations = self.activations;
         self.normaliser.renew(&NORMALISER, 0, self.pvdf_part.heard(), &mut activations);
@@ -297,31 +274,28 @@ impl HebbianDetector {
         }
     }
 
-    /// Weights and maxima, to be saved.
     pub fn learned(&self) -> Learned {
         Learned::of(&self.normaliser, &self.network, self.shear.learned())
     }
 
-    /// Restores saved weights and maxima.
-    ///
-    /// # Errors
-    /// Why the bytes are refused; nothing has changed then.
-    pub fn restore(&mut self, bytes: &[u8]) -> Result<(), snapshot::Damaged> {
-        let slips_at;
-        (self.normaliser, self.network, slips_at) = snapshot::restore(&NORMALISER, bytes)?;
+    /// False if the bytes are no snapshot of this network; nothing has changed then.
+    pub fn restore(&mut self, bytes: &[u8]) -> bool {
+        let Some((normaliser, network, slips_at)) = snapshot::restore(&NORMALISER, bytes) else {
+            return false;
+        };
+        (self.normaliser, self.network) = (normaliser, network);
         self.shear.restore(slips_at);
         self.noise = Noise::default();
         self.weights_changed = true;
         self.pvdf_part.outdate();
-        Ok(())
+        true
     }
 
-    /// `sum` is the films' part of o1.
-    fn judge(&mut self, config: &HebbianConfig, felt: &Felt<'_>, sum: i64) {
-        self.since_loud_frames = if felt.loud { 0 } else { self.since_loud_frames.saturating_add(1) };
-        // Once said, half of it keeps it said: one slip has dips.
+    fn judge(&mut self, config: &HebbianConfig, sensed: &Sensed<'_>, sum: i64) {
+        self.since_loud_frames = if sensed.noisy { 0 } else { self.since_loud_frames.saturating_add(1) };
+        // Half the threshold keeps it on: one slip has dips.
         let threshold = i64::from(config.slip_permille) / if self.films_say { 2 } else { 1 };
-        let says = felt.situation.grasp
+        let says = sensed.grasp
             && self.since_loud_frames >= config.loud_frames
             && sum * 1_000 <= -threshold * ONE
             && sum <= -self.noise.floor() / if self.films_say { 2 } else { 1 };
@@ -331,7 +305,6 @@ impl HebbianDetector {
             return;
         }
         self.said_frames = self.said_frames.saturating_add(1);
-        // Somewhere: at most so many films have half of the mean.
         let hears = |part: &i32| i64::from(*part) * 2 * PVDF_COUNT as i64 <= sum;
         let count = if self.lesson.is_ok() {
             self.network.parts(0, FILMS, &self.activations).filter(hears).count()
@@ -346,12 +319,12 @@ impl HebbianDetector {
         }
     }
 
-    /// `felt_so` is whether the activations are those of now.
-    fn learn(&mut self, config: &HebbianConfig, felt: &Felt<'_>, felt_so: bool) {
-        self.lesson = self.teacher.lesson(&config.teacher, felt.situation);
+    fn learn(&mut self, config: &HebbianConfig, sensed: &Sensed<'_>, felt_so: bool) {
+        let disturbed = sensed.vibration.impact || sensed.moves || !sensed.vibration_known;
+        self.lesson = self.teacher.lesson(&config.teacher, Situation { grasp: sensed.grasp, disturbed });
         if let Ok(codes) = self.lesson {
             self.pvdf_part.outdate();
-            if felt.gauge == usize::from(SHEAR_IS_JUDGED) && codes[0] == Code::Minus {
+            if sensed.slot == SHEAR_IS_JUDGED && codes[0] == Code::Minus {
                 self.shear.learn();
             }
             if !felt_so {
@@ -366,7 +339,7 @@ impl HebbianDetector {
                 let mut readings = [0; RECEPTORS];
                 let (films, gauges) = readings.split_at_mut(PVDF_COUNT);
                 films.copy_from_slice(self.pvdf_part.heard());
-                gauges.copy_from_slice(&felt.gauges.loads());
+                gauges.copy_from_slice(&sensed.strain.loads());
                 self.normaliser.observe(&NORMALISER, &readings);
             }
         }
@@ -381,7 +354,7 @@ impl HebbianDetector {
     }
 }
 
-/// Equation 4, of a sum of parts.
+/// Equation 4.
 fn output(sum: i64) -> Output {
     Output::from_bits(sum.clamp(-ONE, ONE) as i32)
 }

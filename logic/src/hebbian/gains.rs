@@ -1,16 +1,13 @@
-//! Parts that readings of vibration add to an output, in one multiplication each.
-//!
-//! A part is `w t`, and an activation t is the reading over its maximum. While nothing is learned, neither weight nor maximum
-//! changes, so their quotient is kept. The reading is shifted up to the maximum's size and the factor keeps all its bits: a part is
-//! within 2^-24 of the one that [`Network::parts`](super::Network::parts) gives, and in the same format (Q26).
+//! Parts that readings of vibration add to an output, in one multiplication each: weight over maximum, kept
+//! while nothing is learned. Within 2^-24 of [`Network::parts`](super::Network::parts), in the same format
+//! (Q26).
 
 use super::arithmetic::Reciprocal;
 use super::network::Weight;
 
-/// Gain of one receptor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Gain {
-    /// The maximum: larger readings are limited to it (activation 1).
+    /// Larger readings are limited to it (activation 1).
     largest: u32,
     /// Left shift of a reading, so that the maximum has 31 bits.
     shift: u32,
@@ -18,19 +15,16 @@ pub struct Gain {
     factor: i32,
 }
 
-/// Gains of `N` vibration receptors.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Gains<const N: usize>([Gain; N]);
 
 impl<const N: usize> Default for Gains<N> {
-    /// Gains of weights of 0.
     fn default() -> Self {
         Self([Gain { largest: 1, shift: 0, factor: 0 }; N])
     }
 }
 
 impl<const N: usize> Gains<N> {
-    /// Gains of these weights and maxima (raw units).
     pub fn of(weights: &[Weight], maxima: &[u32]) -> Self {
         let mut gains = Self::default();
         for ((gain, weight), &largest) in gains.0.iter_mut().zip(weights).zip(maxima) {
@@ -43,16 +37,14 @@ impl<const N: usize> Gains<N> {
         gains
     }
 
-    /// Each receptor's.
     pub const fn each(&self) -> &[Gain; N] {
         &self.0
     }
 }
 
 impl Gain {
-    /// Part of an output (Q26) that this reading adds; the reading must not be negative.
+    /// Part of an output, Q26. `reading` must not be negative.
     #[inline]
-    #[must_use]
     pub fn part(self, reading: i32) -> i32 {
         let reading = ((reading as u32).min(self.largest) << self.shift) as i32;
         // Q31 of the mantissa's reading, times Q26: the upper word is Q25.

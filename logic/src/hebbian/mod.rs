@@ -1,8 +1,5 @@
-//! The Hebbian network, which learns slip from a camera (Tada 2006, equations 1 to 6).
-//!
-//! Tactile nodes t_j (vibration and pressure receptors, [`activations`]) are connected to outputs o_i by weights w_ij
-//! ([`network`]). While a camera gives codes for the motion of object (v1) and hand (v2) ([`teacher`]), the weights learn
-//! these codes from touch. Weights survive a power cut ([`snapshot`]).
+//! The Hebbian network, which learns slip from a camera (Tada 2006, equations 1 to 6). `docs/hebbian.md` has
+//! the measured limits.
 //!
 //! ```text
 //! o_i   = f(sum_j t_j w_ij + v_i)                            (3), f clips at +-1 (4)
@@ -10,14 +7,11 @@
 //! r_ij  = (|w_ij| + delta) / ((sum_j |w_ij|) + delta)        (6)
 //! ```
 //!
-//! `docs/hebbian.md` has the measured limits.
-//!
-//! Everything is integer, so that a PC and a Cortex-M4 agree to the last bit. Single precision would cost the same
-//! (a multiply-add is one instruction in both), but it drops an update below 2^-24 of its weight, which is every useful
-//! one at 1 kHz, and the chip's multiply-accumulate rounds unlike a PC's multiply and add.
+//! Tactile nodes t_j ([`activations`]) are connected to outputs o_i by weights w_ij ([`network`]); a camera
+//! gives codes v_i ([`teacher`]). Everything is integer: a single drops an update below 2^-24 of its weight,
+//! which is every useful one at 1 kHz.
 
 pub mod activations;
-mod adapter;
 mod arithmetic;
 mod balance;
 pub mod detector;
@@ -34,15 +28,13 @@ pub use activations::{Activation, Activations, Normaliser, NormaliserConfig, Sen
 pub use detector::{HebbianDetector, Learned, NORMALISER, SNAPSHOT_LENGTH};
 pub use gains::Gains;
 pub use network::{Network, Output, Weight};
-pub use rule::{Config, Config as LearningConfig, NotAllowed, Rule};
-pub use snapshot::Damaged;
+pub use rule::{Config, Config as LearningConfig, Rule};
 pub use teacher::{Situation, Teacher, TeacherConfig};
 pub use tenax_hal_shim::words::{Code, Codes, NoLesson};
 
-/// Receptors of one fingertip: 12 vibration, 12 pressure (Tada 2006, section III.A).
+/// 12 vibration, 12 pressure (Tada 2006, section III.A).
 pub const RECEPTORS: usize = 24;
-/// Outputs: relative motion (o1) and direction (o2).
+/// Relative motion (o1) and direction (o2).
 pub const OUTPUTS: usize = 2;
 
-/// The network of one fingertip.
 pub type FingertipNetwork = Network<RECEPTORS, OUTPUTS>;

@@ -1,31 +1,29 @@
-//! Noise floor of the films' part of o1, with the present weights. It is measured each slow frame while the finger is unloaded and
-//! nothing is loud. Without it, a film whose noise is above the threshold would report slip without end.
+//! Noise floor of the films' part of o1 with the present weights, measured while the finger is unloaded and
+//! nothing is loud. Without it, a noisy film would report slip without end.
 
 use tenax_hal_shim::channel::FRAMES_PER_SLOW_FRAME;
 
 /// The mean follows over `2^FOLLOWS` cycles, 0.1 s.
 const FOLLOWS: u32 = 3;
-/// A quiet tick stays below so many times the quiet mean, which is that of what is above the films' medians.
+/// Noise floor, in means of quiet.
 const FLOOR: i64 = 6;
 
-/// The mean noise of a slow frame.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Noise {
-    /// Sum of this slow frame so far, units of an output; positive if the films' part is below 0.
+    /// Sum of this slow frame, units of an output; positive if the films' part is below 0.
     sum: i64,
-    /// Averaged sum of quiet slow frames, units of an output; None before the first.
+    /// Averaged sum of quiet slow frames, units of an output.
     nothing: Option<i64>,
     floor: i64,
 }
 
 impl Noise {
-    /// Takes the films' part of o1 of a tick.
     #[inline]
     pub(super) const fn add(&mut self, by_films: i64) {
         self.sum -= by_films;
     }
 
-    /// Ends a cycle. `is_nothing`: the finger is unloaded, and nothing is loud.
+    /// `is_nothing`: the finger is unloaded, and nothing is loud.
     #[inline(never)]
     pub(super) fn end_cycle(&mut self, is_nothing: bool) {
         let sum = core::mem::take(&mut self.sum).max(0);
@@ -36,7 +34,7 @@ impl Noise {
         }
     }
 
-    /// The noise floor of a tick, units of an output: quiet ticks stay below. 0 while it is not known.
+    /// Units of an output; quiet ticks stay below. 0 while it is not known.
     pub(super) const fn floor(&self) -> i64 {
         self.floor
     }
@@ -61,7 +59,6 @@ mod tests {
         assert_eq!(cycle(1_000_000, false), 600);
         let settled = (0..80).map(|_| cycle(200, true)).last().unwrap();
         assert!((1_190..=1_200).contains(&settled), "{settled}");
-        // An untaught network hears nothing, and its floor is nothing.
         assert!((0..80).map(|_| cycle(0, true)).last().unwrap() < 20);
     }
 }

@@ -2,26 +2,25 @@
 
 use core::ops::RangeInclusive;
 
-/// The rates of equations 5 and 6, for one update. At 1 kHz, a beta of 10 000 ppb forgets in 100 s of being taught.
+/// Rates of equations 5 and 6 for one update. At 1 kHz, a beta of 10 000 ppb forgets in 100 s of being
+/// taught.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Config {
-    /// alpha: learning rate, parts per billion.
     pub alpha_ppb: u32,
-    /// beta: forgetting rate, parts per billion. With 0, weights only ever stop at their limit.
+    /// With 0, weights only stop at their limit.
     pub beta_ppb: u32,
-    /// delta: constant share of each connection in the variable rate, parts per million of a weight of 1. The smaller
-    /// it is against the weights, the more one connection dominates. Never 0: a weight of 0 would then stay 0.
+    /// Constant share of each connection, parts per million of a weight of 1. Never 0: a weight of 0 would
+    /// then stay 0.
     pub delta_ppm: u32,
 }
 
 impl Config {
-    /// The middle of the useful region of the map in `docs/hebbian.md`.
+    /// Middle of the useful region of the map in `docs/hebbian.md`.
     pub const DEFAULT: Self = Self { alpha_ppb: 50_000, beta_ppb: 10_000, delta_ppm: 300_000 };
-    /// Accepted alpha, ppb. Below 1/16, so that a step fits its format.
+    /// Below 1/16, so that a step fits its format.
     pub const ALPHA_PPB: RangeInclusive<u32> = 0..=60_000_000;
-    /// Accepted beta, ppb.
     pub const BETA_PPB: RangeInclusive<u32> = 0..=60_000_000;
-    /// Accepted delta, ppm: from 8000 times the resolution of r to the largest weight.
+    /// From 8000 times the resolution of r to the largest weight.
     pub const DELTA_PPM: RangeInclusive<u32> = 1_000..=8_000_000;
 }
 
@@ -31,47 +30,27 @@ impl Default for Config {
     }
 }
 
-/// The setting that is outside its range (see [`Config`]'s constants).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum NotAllowed {
-    /// `alpha_ppb`.
-    Alpha,
-    /// `beta_ppb`.
-    Beta,
-    /// `delta_ppm`.
-    Delta,
-}
-
-/// A [`Config`] in the formats of the update.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Rule {
-    /// alpha, Q35, below 2^31. Rounded down.
+    /// Q35, below 2^31, rounded down.
     pub(super) alpha: u32,
-    /// -beta, Q32, above -2^28. Rounded to nearest.
+    /// Q32, above -2^28, rounded to nearest.
     pub(super) minus_beta: i32,
-    /// delta, Q23, in 2^13..=2^26. Rounded to nearest.
+    /// Q23, in 2^13..=2^26, rounded to nearest.
     pub(super) delta: u32,
 }
 
 impl Rule {
-    /// The rates in the update's formats. Fails with the setting that is out of range.
-    pub fn new(config: &Config) -> Result<Self, NotAllowed> {
-        if !Config::ALPHA_PPB.contains(&config.alpha_ppb) {
-            return Err(NotAllowed::Alpha);
-        }
-        if !Config::BETA_PPB.contains(&config.beta_ppb) {
-            return Err(NotAllowed::Beta);
-        }
-        if !Config::DELTA_PPM.contains(&config.delta_ppm) {
-            return Err(NotAllowed::Delta);
-        }
-        Ok(Self::of(config))
+    /// None if a rate is outside its range.
+    pub fn new(config: &Config) -> Option<Self> {
+        let allowed = Config::ALPHA_PPB.contains(&config.alpha_ppb)
+            && Config::BETA_PPB.contains(&config.beta_ppb)
+            && Config::DELTA_PPM.contains(&config.delta_ppm);
+        allowed.then(|| Self::of(config))
     }
 
-    /// The rule of the default rates.
     pub const DEFAULT: Self = Self::of(&Config::DEFAULT);
 
-    /// The rule of rates that are within their ranges.
     pub(crate) const fn of(config: &Config) -> Self {
         // 60e6 < 2^26, so nothing below leaves 64 bits, and the ranges above keep each result in its type.
         let beta = (((config.beta_ppb as u64) << 32) + 500_000_000) / 1_000_000_000;
@@ -85,7 +64,6 @@ impl Rule {
 }
 
 impl Default for Rule {
-    /// The rule of the default rates.
     fn default() -> Self {
         Self::DEFAULT
     }
@@ -96,16 +74,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_setting_out_of_range_is_named() {
-        let good = Config::default();
-        assert!(Rule::new(&good).is_ok());
-        assert_eq!(Rule::new(&Config { alpha_ppb: 60_000_001, ..good }), Err(NotAllowed::Alpha));
-        assert_eq!(Rule::new(&Config { beta_ppb: u32::MAX, ..good }), Err(NotAllowed::Beta));
-        assert_eq!(Rule::new(&Config { delta_ppm: 0, ..good }), Err(NotAllowed::Delta));
-    }
-
-    #[test]
     fn the_ends_of_the_ranges_fit_their_formats() {
+        let good = Config::default();
+        for wrong in [
+            Config { alpha_ppb: 60_000_001, ..good },
+            Config { beta_ppb: u32::MAX, ..good },
+            Config { delta_ppm: 0, ..good },
+        ] {
+            assert_eq!(Rule::new(&wrong), None);
+        }
         let ends = |range: RangeInclusive<u32>| [*range.start(), *range.end()];
         for alpha_ppb in ends(Config::ALPHA_PPB) {
             for beta_ppb in ends(Config::BETA_PPB) {

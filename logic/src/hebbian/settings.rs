@@ -3,33 +3,20 @@
 use super::{LearningConfig, Rule, TeacherConfig};
 use crate::setting::settings;
 
-/// Thresholds of the Hebbian detector, and how it learns.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct HebbianConfig {
-    /// Slip is reported while the films' part of o1 is below minus this, per mille.
     pub slip_permille: u16,
-    /// Time below the threshold before slip is reported if only some films show it, in frames.
     pub slip_frames: u32,
-    /// Time below the threshold before slip is reported if all films show it, in frames. It is longer than an impact
-    /// lasts.
     pub everywhere_frames: u32,
-    /// Time after an impact or a run of the motor in which o1 is not evaluated, in frames: the envelopes' decay and
-    /// the motor's dead time.
     pub loud_frames: u32,
-    /// Time by which Ft/Fn is extrapolated, ms; 0: no warnings.
     pub ahead_ms: u16,
-    /// Duty from which the motor counts as fast, per mille. Slower closing does not stop lessons.
     pub loud_duty_permille: u16,
-    /// When a teacher's codes are used.
     pub teacher: TeacherConfig,
-    /// Learning rates.
     pub learning: LearningConfig,
-    /// Learning rates in the formats of the update.
     pub rule: Rule,
 }
 
 impl HebbianConfig {
-    /// The rule follows the rates that were set.
     pub(crate) const fn follow(&mut self) {
         self.rule = Rule::of(&self.learning);
     }

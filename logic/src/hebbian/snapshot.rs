@@ -1,51 +1,32 @@
-//! Bytes of the network that survive a power cut: the weights, and the maxima of the inputs that belong to them.
+//! Bytes of the network that survive a power cut. A restored network gives the same outputs bit for bit.
 //!
 //! ```text
 //! 0  version         1  inputs        2  outputs        3  0
 //! 4  maxima          u32 each, little-endian, raw units
 //!    weights         i32 Q27 each, little-endian, a row for each output
-//!    more            u32, little-endian: what belongs to them and is no weight
+//!    more            u32, little-endian: one word that is no weight
 //!    CRC-32          u32, little-endian, of everything before it (the wire's: ISO-HDLC)
 //! ```
-//!
-//! The lower words of the kept weights are left out: they are below the resolution of an output, so a restored network
-//! gives the same outputs bit for bit and goes on learning from within 2^-27 of each weight.
 
 use super::activations::{Normaliser, NormaliserConfig};
 use super::network::{Network, Weight};
 use crate::checksum::CRC;
 
-/// Version of a snapshot's layout. [`restore`] refuses a snapshot of another version.
 pub const VERSION: u8 = 2;
 
 const HEADER: usize = 4;
 const WORD: usize = 4;
 
-/// Why a snapshot is refused.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Damaged {
-    /// It has fewer or more bytes than a snapshot of this network.
-    Length,
-    /// Its CRC does not fit: cut off in writing, worn flash, or never written.
-    Checksum,
-    /// Of another version of the layout.
-    Version(u8),
-    /// Of a network of another size.
-    Shape {
-        /// Its inputs.
-        inputs: u8,
-        /// Its outputs.
-        outputs: u8,
-    },
-}
-
-/// Bytes of a snapshot.
-#[must_use]
 pub const fn length(inputs: usize, outputs: usize) -> usize {
     HEADER + WORD * (inputs + inputs * outputs + 2)
 }
 
-/// Contents of a snapshot: small enough to be copied in a tick, so that the bytes can be made when there is more time.
+/// A network has at most 62 inputs; the outputs' count only has to differ for another shape.
+const fn header_of<const I: usize, const O: usize>() -> [u8; HEADER] {
+    [VERSION, I as u8, O as u8, 0]
+}
+
+/// Small enough to be copied in a tick; the bytes are made when there is more time.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Contents<const I: usize, const O: usize> {
     maxima: [u32; I],
@@ -54,18 +35,16 @@ pub struct Contents<const I: usize, const O: usize> {
 }
 
 impl<const I: usize, const O: usize> Contents<I, O> {
-    /// Contents from a network, the normaliser that its weights belong to, and one more word.
     pub fn of(normaliser: &Normaliser<I>, network: &Network<I, O>, more: u32) -> Self {
         Self { maxima: normaliser.maxima(), weights: network.weights(), more }
     }
 
-    /// Writes the snapshot to the beginning of `buffer` and gives it. None if the buffer is shorter than [`length`].
+    /// None if the buffer is shorter than [`length`].
     pub fn write<'a>(&self, buffer: &'a mut [u8]) -> Option<&'a [u8]> {
         let snapshot = buffer.get_mut(..length(I, O))?;
         let (body, crc) = snapshot.split_last_chunk_mut::<WORD>()?;
         let (header, words) = body.split_first_chunk_mut::<HEADER>()?;
-        // A network has at most 62 inputs; the outputs' count only has to differ for another shape.
-        *header = [VERSION, I as u8, O as u8, 0];
+        *header = header_of::<I, O>();
         let maxima = self.maxima.map(u32::to_le_bytes);
         let weights = self.weights.map(|row| row.map(|weight| weight.into_bits().to_le_bytes()));
         let (slots, _) = words.as_chunks_mut::<WORD>();
@@ -78,7 +57,7 @@ impl<const I: usize, const O: usize> Contents<I, O> {
     }
 }
 
-/// Writes a snapshot to the beginning of `buffer` and gives it. None if the buffer is shorter than [`length`].
+/// None if the buffer is shorter than [`length`].
 pub fn save<'a, const I: usize, const O: usize>(
     normaliser: &Normaliser<I>,
     network: &Network<I, O>,
@@ -88,25 +67,15 @@ pub fn save<'a, const I: usize, const O: usize>(
     Contents::of(normaliser, network, more).write(buffer)
 }
 
-/// Normaliser, network and the additional word of a snapshot, or why it is refused. The receptors' zeros are not in it.
 pub fn restore<const I: usize, const O: usize>(
     config: &NormaliserConfig<I>,
     snapshot: &[u8],
-) -> Result<(Normaliser<I>, Network<I, O>, u32), Damaged> {
-    let (body, crc) = snapshot.split_last_chunk::<WORD>().ok_or(Damaged::Length)?;
-    let (header, words) = body.split_first_chunk::<HEADER>().ok_or(Damaged::Length)?;
-    if CRC.checksum(body) != u32::from_le_bytes(*crc) {
-        return Err(Damaged::Checksum);
-    }
-    let [version, inputs, outputs, _] = *header;
-    if version != VERSION {
-        return Err(Damaged::Version(version));
-    }
-    if (usize::from(inputs), usize::from(outputs)) != (I, O) {
-        return Err(Damaged::Shape { inputs, outputs });
-    }
-    if snapshot.len() != length(I, O) {
-        return Err(Damaged::Length);
+) -> Option<(Normaliser<I>, Network<I, O>, u32)> {
+    let (body, crc) = snapshot.split_last_chunk::<WORD>()?;
+    let (header, words) = body.split_first_chunk::<HEADER>()?;
+    let is_whole = CRC.checksum(body) == u32::from_le_bytes(*crc);
+    if !is_whole || *header != header_of::<I, O>() || snapshot.len() != length(I, O) {
+        return None;
     }
     let mut maxima = [0; I];
     let mut weights = [[Weight::default(); I]; O];
@@ -120,7 +89,7 @@ pub fn restore<const I: usize, const O: usize>(
     for (weight, slot) in weights.as_flattened_mut().iter_mut().zip(weight_slots) {
         *weight = Weight::from_bits(i32::from_le_bytes(*slot));
     }
-    Ok((Normaliser::from_maxima(config, &maxima), Network::from_weights(&weights), more))
+    Some((Normaliser::from_maxima(config, &maxima), Network::from_weights(&weights), more))
 }
 
 #[cfg(test)]
@@ -170,29 +139,21 @@ mod tests {
     }
 
     #[test]
-    fn every_damaged_bit_is_found() {
-        let (.., bytes) = learned();
+    fn every_damaged_bit_and_every_other_network_is_refused() {
+        let (normaliser, network, bytes) = learned();
         for bit in 0..8 * LENGTH {
             let mut damaged = bytes;
             damaged[bit / 8] ^= 1 << (bit % 8);
-            assert_eq!(restore::<3, 2>(&CONFIG, &damaged).unwrap_err(), Damaged::Checksum, "bit {bit}");
+            assert!(restore::<3, 2>(&CONFIG, &damaged).is_none(), "bit {bit}");
         }
         for length in 0..LENGTH {
-            assert!(restore::<3, 2>(&CONFIG, &bytes[..length]).is_err(), "{length} bytes");
+            assert!(restore::<3, 2>(&CONFIG, &bytes[..length]).is_none(), "{length} bytes");
         }
-        assert_eq!(restore::<3, 2>(&CONFIG, &[0xFF; LENGTH]).unwrap_err(), Damaged::Checksum);
-        assert_eq!(restore::<3, 2>(&CONFIG, &[]).unwrap_err(), Damaged::Length);
-    }
-
-    #[test]
-    fn a_whole_snapshot_of_something_else_is_refused_and_says_why() {
-        let (normaliser, network, mut bytes) = learned();
-        bytes[0] = VERSION - 1;
-        assert_eq!(restore::<3, 2>(&CONFIG, &resealed(bytes)).unwrap_err(), Damaged::Version(VERSION - 1));
-        bytes[0] = VERSION;
-        bytes[1] = 4;
-        let shape = Damaged::Shape { inputs: 4, outputs: 2 };
-        assert_eq!(restore::<3, 2>(&CONFIG, &resealed(bytes)).unwrap_err(), shape);
+        for (at, other) in [(0, VERSION - 1), (1, 4), (2, 1)] {
+            let mut bytes = bytes;
+            bytes[at] = other;
+            assert!(restore::<3, 2>(&CONFIG, &resealed(bytes)).is_none(), "byte {at}");
+        }
         assert_eq!(save(&normaliser, &network, 77, &mut [0; LENGTH - 1]), None);
     }
 

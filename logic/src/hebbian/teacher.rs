@@ -1,13 +1,7 @@
-//! The camera as a teacher (Tada 2006, equations 1 and 2), and when its codes are used.
-//!
-//! The paper learns in one phase and works in another. Here both happen at once. There is a lesson only
-//! while the finger holds something, nothing disturbs it, and fresh codes that do not contradict each other
-//! say that something moves. At any other time the weights stay as they are and are not forgotten either,
-//! so a year without a camera costs nothing.
-//!
-//! The codes chatter, because slow motion is less than a pixel in some frames (section III.B). So each is the median of
-//! the last three messages: a single stray zero or code is dropped, at the cost of one message's delay. Two opposite codes
-//! among the three are a contradiction, or a change of direction; neither teaches anything for two messages.
+//! The camera as a teacher (Tada 2006, equations 1 and 2). There is a lesson only while the finger holds
+//! something, nothing disturbs it, and fresh codes without contradiction say that something moves; otherwise
+//! weights are neither learned nor forgotten. Codes chatter (section III.B), so each is the median of the
+//! last three messages.
 
 use tenax_hal_shim::words::{Code, Codes, NoLesson};
 
@@ -16,10 +10,9 @@ use crate::latest;
 /// Messages that a code is the median of.
 const MEMORY: usize = 3;
 
-/// When a teacher's codes are used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TeacherConfig {
-    /// Age of the picture beyond which its codes are not used, ms: the receptors have changed since.
+    /// Age of the picture beyond which its codes are not used, ms.
     pub fresh_ms: u16,
 }
 
@@ -30,30 +23,26 @@ impl Default for TeacherConfig {
     }
 }
 
-/// Conditions of a lesson.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Situation {
-    /// The finger is loaded: the receptors feel an object.
+    /// Loaded: the receptors feel an object.
     pub grasp: bool,
-    /// The motor runs, the hand is struck or swung, or a receptor has just been lost: the receptors feel no slip.
+    /// The motor runs, the hand is struck or swung, or a receptor has just been lost.
     pub disturbed: bool,
 }
 
-/// The teacher's last codes and their age.
 #[derive(Clone, Debug, Default)]
 pub struct Teacher {
-    /// The newest first.
     said: [Codes; MEMORY],
     heard: usize,
     age_ms: u16,
 }
 
 impl Teacher {
-    /// Takes a teacher's codes and the age of the picture that they were made from, ms. Codes of an older picture than
-    /// the newest received are dropped. After a silence of more than `fresh_ms`, the codes before it no longer count.
+    /// Codes of an older picture than the newest are dropped. After a silence of more than `fresh_ms`, the
+    /// codes before it no longer count.
     pub fn receive(&mut self, config: &TeacherConfig, codes: Codes, age_ms: u16) {
         if self.age_ms > config.fresh_ms {
-            // After a silence it has to be believed anew.
             self.heard = 0;
         }
         if self.heard > 0 && age_ms > self.age_ms {
@@ -64,17 +53,15 @@ impl Teacher {
         self.age_ms = age_ms;
     }
 
-    /// Ages the newest picture by 1 ms. Call it in every second frame.
+    /// Call it in every second frame.
     pub fn tick_ms(&mut self) {
         self.age_ms = self.age_ms.saturating_add(1);
     }
 
-    /// Age of the newest picture, ms. None before the first.
     pub fn age_ms(&self) -> Option<u16> {
         (self.heard > 0).then_some(self.age_ms)
     }
 
-    /// The codes to learn now, or why there is no lesson.
     pub fn lesson(&self, config: &TeacherConfig, situation: Situation) -> Result<Codes, NoLesson> {
         if self.heard == 0 {
             return Err(NoLesson::Absent);
@@ -163,7 +150,6 @@ mod tests {
     #[test]
     fn a_late_teacher_teaches_nothing_and_has_to_be_believed_anew() {
         let mut teacher = after(&[[Minus, Plus]; 3]);
-        // 40 ms old when it came, 33 ms since.
         for _ in 73..120 {
             teacher.tick_ms();
         }
@@ -181,21 +167,5 @@ mod tests {
             late.receive(&CONFIG, [Minus, Plus], 121);
         }
         assert_eq!(late.lesson(&CONFIG, HELD), Err(NoLesson::Late));
-    }
-
-    #[test]
-    fn a_picture_that_was_overtaken_is_dropped() {
-        let mut teacher = after(&[[Minus, Plus]; 3]);
-        teacher.receive(&CONFIG, [Plus, Plus], 110);
-        assert_eq!(teacher.lesson(&CONFIG, HELD), Ok([Minus, Plus]));
-        assert_eq!(teacher.age_ms(), Some(73));
-    }
-
-    #[test]
-    fn only_an_undisturbed_grasp_is_a_lesson() {
-        let teacher = after(&[[Minus, Zero]; 3]);
-        assert_eq!(teacher.lesson(&CONFIG, HELD), Ok([Minus, Zero]));
-        assert_eq!(teacher.lesson(&CONFIG, Situation { grasp: false, ..HELD }), Err(NoLesson::NoGrasp));
-        assert_eq!(teacher.lesson(&CONFIG, Situation { disturbed: true, ..HELD }), Err(NoLesson::Disturbed));
     }
 }

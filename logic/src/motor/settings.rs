@@ -2,12 +2,9 @@
 
 use crate::setting::settings;
 
-/// Limits of the motor's current.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MotorConfig {
-    /// Largest continuous current, mA.
     pub limit_ma: u16,
-    /// The current of the blocked motor at full duty, mA.
     pub stall_ma: u16,
 }
 

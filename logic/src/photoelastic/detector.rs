@@ -6,13 +6,12 @@ use super::{ALUMINIUM, HeadConfig};
 use crate::detectors::{Description, Detector, Said, Sensed, confidence};
 use tenax_hal_shim::channel::frames;
 
-/// After an impact or a fast run of the motor, in frames: the load still changes, and the filters ring.
+/// Time after an impact or a fast run of the motor: the load still changes, and the filters ring.
 const AFTER_NOISE: u32 = frames(160);
 
-/// Time for which a report may continue while the motor answers it, frames: the strip still flickers.
+/// Time for which a report may continue while the motor answers it: the strip still flickers.
 const ANSWERED: u32 = frames(50);
 
-/// Slip detector of a photoelastic head.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PhotoelasticDetector {
     quiet: u32,
@@ -43,7 +42,7 @@ impl Detector for PhotoelasticDetector {
 }
 
 impl PhotoelasticDetector {
-    /// Reports slip by the head's signal. Cold, since most hands have no head.
+    /// Cold, since most hands have no head.
     #[cold]
     #[inline(never)]
     fn judge(&mut self, config: &HeadConfig, sensed: &Sensed<'_>) -> Said {

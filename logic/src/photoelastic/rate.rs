@@ -1,32 +1,23 @@
-//! Rate of slip, from amplitude and frequency of the ac part.
-//!
-//! Both rise with the rate, and neither follows a law that holds for all materials: the amplitude grows with the drop of
-//! friction, too. So the rate is a fit of logarithms, calibrated with one material (`tenax calibrate photoelastic`):
-//! `log2 rate = a + b log2 amplitude + c log2 frequency + d log2 force`. On another material it is off by a factor.
+//! Rate of slip from amplitude and frequency of the ac part: a fit of logarithms, calibrated with one
+//! material (`tenax calibrate photoelastic`). On another material it is off by a factor.
 
 use crate::emg::log2::{LEVEL_Q, level_of};
 
-/// A calibration of the slip rate: `log2 rate = a + b log2 amplitude + c log2 frequency + d log2 force` (a fit, no
-/// published law). Logarithms and factors are Q10. The amplitude is a part of the span in Q20, the frequency in mHz,
-/// the force in mN, the rate in um/s.
+/// `log2 rate = a + b log2 amplitude + c log2 frequency + d log2 force` (a fit, no published law); factors
+/// are Q10. Amplitude as a part of the span (Q20), frequency in mHz, force in mN, rate in um/s.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RateFit {
-    /// a.
     pub constant: i32,
-    /// b.
     pub amplitude: i32,
-    /// c.
     pub frequency: i32,
-    /// d.
     pub force: i32,
 }
 
-/// Largest calibrated slip rate, um/s.
 const RATE_MAX_UM_S: i32 = 20_000;
-/// Numbers are raised by this before their logarithm is taken, which begins at 8000.
+/// Left shift of a number before its logarithm, which begins at 8000.
 const RAISED: u32 = 13;
 
-/// `log2`, Q10, of 1 to 2^17.
+/// Q10, of 1 to 2^17.
 fn log2(number: i32) -> i32 {
     level_of(number.clamp(1, 1 << 17) << RAISED) - ((RAISED as i32) << LEVEL_Q)
 }
@@ -44,17 +35,15 @@ fn exp2(x: i32) -> i32 {
 }
 
 impl RateFit {
-    /// Returns the inputs of the fit: log2, Q10, of amplitude (a part of the span, Q20), frequency (mHz, of a period in
-    /// 1/16 frames) and force (mN).
-    #[must_use]
+    /// log2, Q10, of amplitude (part of the span, Q20), frequency (mHz, of a period in 1/16 frames) and force
+    /// (mN).
     pub fn features(amplitude_q20: i32, period_q4: u16, force_mn: i32) -> [i32; 3] {
         // 2000 frames a second in 1/16: 32 000 000 mHz over the period. A quarter of it has room.
         let quarter_mhz = 8_000_000 / i32::from(period_q4.max(1));
         [log2(amplitude_q20), log2(quarter_mhz) + (2 << LEVEL_Q), log2(force_mn)]
     }
 
-    /// Returns the rate of slip, um/s, 0 to 20 000, for an amplitude, a period (1/16 frames) and a force (mN).
-    #[must_use]
+    /// 0 to 20 000 um/s.
     pub fn rate_um_s(&self, amplitude_q20: i32, period_q4: u16, force_mn: i32) -> i32 {
         let [amplitude, frequency, force] = Self::features(amplitude_q20, period_q4, force_mn).map(i64::from);
         let sum = amplitude * i64::from(self.amplitude)
@@ -91,7 +80,6 @@ mod tests {
             frequency: 1 << LEVEL_Q,
             force: -(1 << LEVEL_Q),
         };
-        // 320 frames a swing: 6.25 Hz.
         let rate = f64::from(fit.rate_um_s(64, 5_120, 1_000));
         assert!((rate / (2.0 * 64.0 * 6_250.0 / 1_000.0) - 1.0).abs() < 0.03, "{rate}");
         assert_eq!(fit.rate_um_s(i32::MAX, 0, i32::MIN), RATE_MAX_UM_S);

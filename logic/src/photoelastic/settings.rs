@@ -3,14 +3,11 @@
 use super::curve::Curve;
 use crate::setting::settings;
 
-/// Settings of the head.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct HeadConfig {
-    /// Whether a photoelastic head is in the place of film 12.
     pub fitted: bool,
-    /// Threshold of the ac envelope above which slip is reported, samples (14 bits); `head-slip-mv`.
+    /// Threshold of the ac envelope, samples (14 bits).
     pub slip: u16,
-    /// Its calibration.
     pub curve: Curve,
 }
 

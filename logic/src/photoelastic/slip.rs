@@ -1,26 +1,23 @@
-//! Whether the ac part is slip: large enough for long enough, and swinging.
-//!
-//! An impact rings and dies away; a force that changes swings once. Slip over the strip goes on.
+//! Whether the ac part is slip: large for long enough, and swinging. An impact rings and dies away; a force
+//! that changes swings once.
 
 use super::split::{Q, Split};
 use tenax_hal_shim::channel::frames;
 
-/// Time for which the ac part must be large, frames: longer than an impact rings.
+/// Longer than an impact rings.
 const LASTS: u32 = frames(45);
-/// Number of consecutive oscillations that slip needs.
+/// Consecutive oscillations that slip needs.
 const SWINGS: u16 = 3;
 
-/// Counts large and oscillating frames until they are slip.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Presence {
     large: u32,
-    /// Swings before it became large: those of noise.
     before: u16,
     slip: bool,
 }
 
 impl Presence {
-    /// Takes a frame. `on`: threshold of the ac envelope, samples (14 bits); half of it keeps slip on.
+    /// `on`: threshold of the ac envelope, samples (14 bits); half of it keeps slip on.
     #[inline]
     pub fn process(&mut self, on: u16, split: &Split) {
         let on = (i32::from(on) << Q) >> u32::from(self.slip);
@@ -30,12 +27,10 @@ impl Presence {
             return;
         }
         self.large = self.large.saturating_add(1);
-        // Too slow a swing begins the count anew.
         self.before = self.before.min(split.swings());
         self.slip |= self.large >= LASTS && split.swings() - self.before >= SWINGS;
     }
 
-    /// Whether the ac part is slip: large for 45 ms and three swings, until it is below half of the threshold.
     pub const fn is_slip(&self) -> bool {
         self.slip
     }
@@ -71,7 +66,6 @@ mod tests {
 
     #[test]
     fn a_force_that_comes_fast_is_not_slip() {
-        // 1 N in 30 to 300 ms, over noise of 3 samples.
         for frames in [60.0, 160.0, 600.0] {
             let (mut split, mut presence) = (Split::default(), Presence::default());
             for n in 0..4_000_u32 {

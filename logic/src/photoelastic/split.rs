@@ -1,37 +1,27 @@
-//! Splits the head's signal: its fast part (ac) shows slip, its mean (dc) normal force.
-//!
-//! The paper filters the signal for its ac part and subtracts that for its dc part (section 3). Here ac is what two
-//! high-passes leave: one alone would pass the slope of a force that changes evenly, which is larger than a slow slip. dc is
-//! the mean of the 25 samples of a cycle: no filter follows a force of 6 N/s more closely, and a whole cycle of 80 Hz and its
-//! multiples has no part in it.
-//!
-//! Fixed point: samples (14 bits) around mid-scale in Q14. Every state stays below 2^29, so no difference overflows.
+//! Splits the head's signal: ac shows slip, dc normal force (section 3). Two high-passes give ac, since one
+//! would pass the slope of an evenly changing force; dc is the mean of a cycle's 25 samples. Samples around
+//! mid-scale in Q14; every state stays below 2^29, so no difference overflows.
 
 use tenax_hal_shim::channel::FRAMES_PER_SLOW_FRAME;
 
 use crate::low_pass::LowPass;
 
-/// Lower edge of the slip band, Hz, twice.
+/// Lower edge of the slip band, twice.
 pub const BAND_LOW_HZ: u32 = 20;
-/// Upper edge, Hz: above lies noise.
 pub const BAND_HIGH_HZ: u32 = 250;
-/// Corner of the envelope, Hz.
 pub const ENVELOPE_HZ: u32 = 12;
-/// Fraction bits of a conditioned sample.
 pub const Q: u32 = 14;
 
-/// The sample in the middle of the converter's range.
 const MIDDLE: i32 = 1 << 13;
 /// A swing that turns back within this much of zero is noise: two samples.
 const NOISE: i32 = 2 << Q;
-/// Frames without a swing after which the swings begin anew, and the period is unknown: 8 Hz is the slowest.
+/// Frames without a swing after which the count begins anew: 8 Hz is the slowest.
 const PERIOD_MAX: u16 = 250;
 
 static HIGH_PASS: LowPass = LowPass::of(BAND_LOW_HZ as f64);
 static LOW_PASS: LowPass = LowPass::of(BAND_HIGH_HZ as f64);
 static ENVELOPE: LowPass = LowPass::of(ENVELOPE_HZ as f64);
 
-/// The filters and the two parts.
 #[derive(Clone, Debug, Default)]
 pub struct Split {
     primed: bool,
@@ -43,16 +33,13 @@ pub struct Split {
     sum: u32,
     count: u32,
     is_above: bool,
-    /// Frames since the last swing upwards.
     since: u16,
-    /// Time of one swing, 1/16 of a frame; follows the last ones.
+    /// Duration of one swing, 1/16 of a frame.
     period_q4: u16,
-    /// Swings in a row.
     swings: u16,
 }
 
 impl Split {
-    /// Takes a 14-bit sample.
     #[inline]
     pub fn process(&mut self, sample: u16) {
         let x = (i32::from(sample) - MIDDLE) << Q;
@@ -70,7 +57,6 @@ impl Split {
         self.count += 1;
     }
 
-    /// Counts swings: each has to pass half of the envelope on either side of zero.
     #[inline]
     fn swing(&mut self) {
         self.since = self.since.saturating_add(1);
@@ -89,7 +75,6 @@ impl Split {
     fn upwards(&mut self) {
         let period_q4 = self.since.min(PERIOD_MAX) << 4;
         self.since = 0;
-        // The first swing ends nothing, so it has no period.
         self.period_q4 = match self.swings {
             0 => 0,
             1 => period_q4,
@@ -98,13 +83,12 @@ impl Split {
         self.swings = self.swings.wrapping_add(1).max(1);
     }
 
-    /// A sample is missing: the cycle's mean would be of another time, and swings cannot be counted over it.
+    /// A mean over the gap would be of another time, and swings cannot be counted over it.
     pub const fn miss(&mut self) {
         (self.sum, self.count, self.swings) = (0, 0, 0);
     }
 
-    /// The mean of the samples since it was last asked for, in 1/16 of a sample; None without samples or after more than a
-    /// cycle of them.
+    /// 1/16 of a sample; None without samples or after more than a cycle of them.
     pub fn take_mean_q4(&mut self) -> Option<i32> {
         let (sum, count) = (core::mem::take(&mut self.sum), core::mem::take(&mut self.count));
         let whole = (1..=u32::from(FRAMES_PER_SLOW_FRAME)).contains(&count);
@@ -116,12 +100,11 @@ impl Split {
         self.envelope
     }
 
-    /// Swings in a row, none further apart than an eighth of a second.
     pub const fn swings(&self) -> u16 {
         self.swings
     }
 
-    /// Time of one swing, 1/16 of a frame; 0 if it is not known.
+    /// 1/16 of a frame; 0 if it is not known.
     pub const fn period_q4(&self) -> u16 {
         if self.swings < 2 { 0 } else { self.period_q4 }
     }
@@ -134,7 +117,6 @@ mod tests {
     use std::vec::Vec;
     use tenax_hal_shim::channel::{FRAME_HZ, SAMPLE_MAX};
 
-    /// The same filters in floating point: y = s + k (x - s), s' = 2 y - s.
     #[derive(Default)]
     struct Float {
         states: [f64; 4],
@@ -212,7 +194,6 @@ mod tests {
             let measured = 16.0 * 2e3 / f64::from(split.period_q4());
             assert!((measured / hz - 1.0).abs() < 0.05 && split.swings() > 10, "{measured} Hz for {hz} Hz");
         }
-        // 6 N/s on the steepest part of the curve: 4 samples a frame.
         let mut split = Split::default();
         for n in 0..2_000 {
             split.process(1_000 + 4 * n);

@@ -25,7 +25,6 @@ impl Senses {
         }
     }
 
-    /// All quadrants have been read.
     fn quadrants(&mut self, config: &Config, journal: &mut Journal) {
         let [Some(a), Some(b), Some(c), Some(d)] = self.fsr_readings else {
             self.forces = None;
@@ -40,7 +39,7 @@ impl Senses {
                 self.pressed = true;
             }
         }
-        // Once it has been seen unloaded, its zero is known again.
+        // Seen unloaded once, its zero is known again.
         self.pressed &= samples.into_iter().any(is_pressed);
         let opened = self.open_frames > 0;
         let forces = self.force_sensor.process(samples, config.friction.loaded_mn, opened);
@@ -49,7 +48,7 @@ impl Senses {
             return;
         };
         if self.pressed {
-            // What presses it may be no object: the size of the force is still a bound, its direction is not.
+            // The load may be no object: its size is still a bound, its direction is not.
             forces.ratio_permille = None;
         }
         self.forces = Some(forces);
@@ -59,7 +58,6 @@ impl Senses {
         }
     }
 
-    /// Estimates the quadrants' drift, and reports a quadrant that newly contradicts the others.
     pub(super) fn blame(&mut self, config: &Config, journal: &mut Journal) {
         if self.fsr_readings.contains(&None) {
             return;
@@ -75,7 +73,6 @@ impl Senses {
         }
     }
 
-    /// Reports an open hand that still reads a load after its zeros had time to follow.
     fn doubt_load(&mut self, config: &Config, journal: &mut Journal) {
         self.weigh(config);
         if self.unloaded {

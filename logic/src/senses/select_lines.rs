@@ -1,7 +1,6 @@
-//! The select lines of the analogue switches: whether the switches show the inputs that the board asks for.
-//!
-//! Inputs [`HIGH_SELECT`] and [`LOW_SELECT`] of switch B, neighbours, are at the supply and at ground. With any line that is cut, stuck or
-//! shorted this pair is missing in its place, or is seen in another one. The switches share the lines, so it speaks for both.
+//! Watch of the analogue switches' select lines. Inputs [`HIGH_SELECT`] and [`LOW_SELECT`] of switch B are at
+//! the supply and at ground: with any line cut, stuck or shorted this pair is missing in its place, or seen
+//! in another one.
 
 use tenax_hal_shim::channel::{HIGH_SELECT, LOW_SELECT, MYO_SELECT, SLOW_HZ, SWITCH_INPUTS, sample_from_mv};
 
@@ -15,32 +14,27 @@ const _: () =
 /// Right slow frames after which lost lines are believed again, 1 s.
 const BACK_AFTER: u8 = SLOW_HZ as u8;
 
-/// What is known of the pair.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Pair {
-    /// It was seen nowhere yet: a board without it is not watched.
+    /// Seen nowhere yet: a board without the pair is not watched.
     #[default]
     Unknown,
-    /// It is in its place, and nowhere else.
     Right,
-    /// Not so in the last slow frame: a second one loses the lines.
+    /// Not in its place in the last slow frame: a second one loses the lines.
     Doubted,
 }
 
-/// Watches the select lines.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct SelectLines {
     pair: Pair,
     /// Right slow frames until the lines are believed; 0: they are.
     until_back: u8,
-    /// What is hidden of a sample: nothing, or all of it. Each tick asks, so that this is a word.
+    /// Mask of the hidden bits of a sample: none, or all.
     hidden: u16,
-    /// The same of a myosensor's sample.
     hidden_muscle: u16,
 }
 
 impl SelectLines {
-    /// Takes the last sample of each input of switch B, once a slow frame.
     #[inline(never)]
     pub fn look(&mut self, switch_b: &[u16; SWITCH_INPUTS as usize]) {
         let (pairs, _) = switch_b.as_chunks();
@@ -62,18 +56,16 @@ impl SelectLines {
         self.hidden_muscle &= self.hidden;
     }
 
-    /// A switched sample, or 0 while the lines are lost: no switched signal can be believed then, and 0 is a dead one's.
+    /// 0, a dead sensor's sample, while the lines are lost.
     #[inline]
     pub const fn believed(self, sample: u16) -> u16 {
         sample & !self.hidden
     }
 
-    /// The same of a myosensor's sample.
     #[inline]
     pub const fn believed_muscle(self, sample: u16) -> u16 {
         sample & !self.hidden_muscle
     }
 }
 
-/// A line stuck high, but for the lowest, does not move the inputs of the myosensors, or moves them to the pair.
 const _: () = assert!(MYO_SELECT.is_multiple_of(2) && HIGH_SELECT & MYO_SELECT == MYO_SELECT);

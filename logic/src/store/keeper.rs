@@ -5,42 +5,33 @@ use tenax_hal_shim::words::Kept;
 use super::payload::ZeroBytes;
 use tenax_hal_shim::channel::frames;
 
-/// Settings and zero are saved when they have changed, and then not again for this long, in frames.
+/// Least time between two saves of settings or zero.
 const CHANGED_FRAMES: u32 = frames(3_000);
-/// Shortest time between two automatic saves of the network's weights, frames.
+/// Least time between two automatic saves of the network's weights.
 const LEARNED_FRAMES: u32 = frames(60_000);
 
-/// State of everything that can be saved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Now {
-    /// How often a setting was changed.
     pub settings_changed: u32,
-    /// How often the myosensors were calibrated.
     pub calibrated: u32,
-    /// The force sensor's zero.
     pub zero: ZeroBytes,
-    /// How often the network's weights have been updated.
     pub updates: u32,
-    /// Whether the hand rests and no lesson is on: only then the network is saved without a command.
+    /// Only a resting hand without a lesson saves the network without a command.
     pub at_rest: bool,
-    /// Whether a command asks to save the network now.
     pub asked: bool,
 }
 
-/// State that was saved last, and the time since.
 #[derive(Clone, Debug)]
 pub struct Keeper {
     settings_changed: u32,
     calibrated: u32,
     zero: ZeroBytes,
-    /// Updates of the weights that the saved network had had.
     updates: u32,
     /// Frames since each kind was saved, saturating.
     since: [u32; Kept::ALL.len()],
 }
 
 impl Keeper {
-    /// A keeper that takes the state `now` as saved.
     pub const fn new(now: &Now) -> Self {
         Self {
             settings_changed: now.settings_changed,
@@ -51,14 +42,13 @@ impl Keeper {
         }
     }
 
-    /// Advances the time by so many frames.
     pub fn pass(&mut self, frames: u32) {
         for since in &mut self.since {
             *since = since.saturating_add(frames);
         }
     }
 
-    /// The kind of record to save now; it counts as saved from now on. None: nothing to save.
+    /// The returned record counts as saved from now on.
     pub fn next(&mut self, now: &Now) -> Option<Kept> {
         let since = |kept: Kept| self.since[kept as usize];
         let learned = now.updates != self.updates;
@@ -67,7 +57,7 @@ impl Keeper {
             self.settings_changed = now.settings_changed;
             Kept::Settings
         } else if now.calibrated != self.calibrated {
-            // It takes a wearer 15 s: a pause of its own.
+            // A calibration takes 15 s: a pause of its own.
             self.calibrated = now.calibrated;
             Kept::Emg
         } else if now.zero != self.zero && since(Kept::Zero) >= CHANGED_FRAMES {

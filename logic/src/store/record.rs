@@ -1,8 +1,7 @@
 //! A record, in words, in the order in which they are programmed.
 //!
 //! ```text
-//! tag        kind, payload's words, and the complements of both: a tag that is half programmed is none, and one whose
-//!            bit reads wrong is found all the same
+//! tag        kind, payload's words, and the complements of both, so that a half programmed tag is found
 //! sequence   higher is newer, over both sectors
 //! payload    up to 255 whole words, little-endian
 //! CRC-32     of all of the above (ISO-HDLC, the wire's)
@@ -17,33 +16,25 @@ use crate::checksum::CRC;
 use crate::hebbian::{Learned, SNAPSHOT_LENGTH};
 use crate::store::payload::{EmgBytes, SettingsBytes, ZeroBytes};
 
-/// Words of a record beside its payload.
 pub const OVERHEAD_WORDS: usize = 4;
 
-/// Word that a session programs before its first record: all bits 0, so that none is half programmed; it is no tag.
+/// All bits 0, so that none is half programmed; it is no tag.
 pub(super) const MARK: u32 = 0;
 
 const COMMIT: u32 = 0x3C5A_96E1;
 
-/// Bytes of the longest payload that there is today: the network's.
 pub const PAYLOAD_BYTES: usize = SNAPSHOT_LENGTH;
 
-/// A record to save.
 #[derive(Clone, Debug)]
 #[allow(clippy::large_enum_variant, reason = "there is no heap to put the large one on")]
 pub enum Record {
-    /// The network's weights.
     Network(Learned),
-    /// The force sensor's zero.
     Zero(ZeroBytes),
-    /// The settings.
     Settings(SettingsBytes),
-    /// The wearer's calibration of the myosensors.
     Emg(EmgBytes),
 }
 
 impl Record {
-    /// Kind of the record.
     pub const fn kept(&self) -> Kept {
         match self {
             Self::Network(_) => Kept::Network,
@@ -53,10 +44,8 @@ impl Record {
         }
     }
 
-    /// Payload of the record, in `buffer` if it has to be made.
     pub fn payload<'a>(&'a self, buffer: &'a mut [u8; PAYLOAD_BYTES]) -> &'a [u8] {
         match self {
-            // The buffer has just the length that it takes.
             Self::Network(learned) => learned.write(buffer).unwrap_or_default(),
             Self::Zero(bytes) => bytes,
             Self::Settings(bytes) => bytes,
@@ -65,7 +54,7 @@ impl Record {
     }
 }
 
-/// Number of this kind of record in flash. Numbers are never reused.
+/// Numbers are never reused.
 pub(super) const fn number(kept: Kept) -> u8 {
     kept as u8 + 1
 }
@@ -74,7 +63,6 @@ pub(super) fn from_number(number: u8) -> Option<Kept> {
     Kept::ALL.into_iter().find(|&kept| self::number(kept) == number)
 }
 
-/// The first word of a record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Tag {
     pub kind: u8,
@@ -87,7 +75,6 @@ impl Tag {
         Some(Self { kind, words: u8::try_from(words).ok()? })
     }
 
-    /// The words that the whole record takes.
     pub const fn record_words(self) -> usize {
         self.words as usize + OVERHEAD_WORDS
     }
@@ -96,15 +83,14 @@ impl Tag {
         u32::from_le_bytes([self.kind, self.words, !self.kind, !self.words])
     }
 
-    /// The tag in this word. None if it is no tag.
     pub fn from_word(word: u32) -> Option<Self> {
         let [kind, words, ..] = word.to_le_bytes();
         let tag = Self { kind, words };
         (tag.to_word() == word).then_some(tag)
     }
 
-    /// The tags that `word` may stand for: itself; both candidates if one bit contradicts the complement; none if more do. A bit
-    /// that is half programmed may read as 0 or 1.
+    /// The word's own tag; both candidates if one bit contradicts the complement; none if more do. A bit that
+    /// is half programmed may read as 0 or 1.
     pub fn read_from(word: u32) -> impl Iterator<Item = Self> {
         let [kind, words, not_kind, not_words] = word.to_le_bytes();
         let (read, complement) = (Self { kind, words }, Self { kind: !not_kind, words: !not_words });
@@ -114,7 +100,7 @@ impl Tag {
         first.into_iter().chain(second)
     }
 
-    /// The sequence number of the record at `at`. None if the record is incomplete.
+    /// Sequence number of the record at `at`. None if the record is incomplete.
     pub fn check(self, area: &impl FlashArea, sector: Sector, at: usize) -> Option<u32> {
         let payload_end = at + 2 + usize::from(self.words);
         if payload_end + 2 > area.sector_words() {
@@ -131,7 +117,7 @@ impl Tag {
     }
 }
 
-/// A record that is being programmed. Dropped before its end, it does not count.
+/// Dropped before its end, the record does not count.
 pub struct Saving<'a> {
     sector: Sector,
     at: usize,
@@ -140,7 +126,6 @@ pub struct Saving<'a> {
     payload: &'a [[u8; 4]],
     digest: Digest<'static, u32>,
     step: usize,
-    /// Where to put a mark first.
     mark: Option<usize>,
 }
 
@@ -156,10 +141,8 @@ impl<'a> Saving<'a> {
         Self { sector, at, tag, sequence, payload, digest: CRC.digest(), step: 0, mark }
     }
 
-    /// Programs the next word; true when it was the last one, and the record counts.
-    ///
-    /// # Errors
-    /// If the flash failed. The record does not count and never will.
+    /// Programs the next word; true when it was the last one, and the record counts. After a failure it never
+    /// will.
     pub fn step(&mut self, area: &mut impl FlashArea) -> Result<bool, FlashFailed> {
         if let Some(place) = self.mark.take() {
             super::program(area, self.sector, place, MARK)?;

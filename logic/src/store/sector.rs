@@ -1,10 +1,5 @@
-//! What one sector holds.
-//!
-//! ```text
-//! opening words   magic, generation, CRC-32 of both: programmed last when a sector is taken into use
-//! records         one after the other
-//! blank words     up to its end
-//! ```
+//! A sector: opening words (magic, generation, CRC-32 of both; programmed last when it is taken into use),
+//! then records, then blank words.
 
 use tenax_hal_shim::flash::{BLANK, FlashArea, FlashFailed, Sector};
 use tenax_hal_shim::words::Kept;
@@ -12,13 +7,10 @@ use tenax_hal_shim::words::Kept;
 use super::record::{self, Tag};
 use crate::checksum::CRC;
 
-/// Words before the first record.
 pub const OPENING_WORDS: usize = 3;
 
-/// Mark of the layout of sectors and records; another layout needs another value.
 const MAGIC: u32 = 0x7E4A_0001;
 
-/// Place of a complete record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Entry {
     pub sector: Sector,
@@ -33,7 +25,7 @@ impl Entry {
         Tag { kind: record::number(self.kept), words: self.words }
     }
 
-    /// Reads the payload into `buffer`. None if it is longer.
+    /// None if `buffer` is shorter.
     pub fn read<'a>(&self, area: &impl FlashArea, buffer: &'a mut [u8]) -> Option<&'a [u8]> {
         let payload = buffer.get_mut(..4 * usize::from(self.words))?;
         let (slots, _) = payload.as_chunks_mut::<4>();
@@ -44,19 +36,15 @@ impl Entry {
     }
 }
 
-/// Everything that is known about a sector.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Survey {
     pub sector: Sector,
     /// None if its opening words are not whole.
     pub generation: Option<u32>,
-    /// The newest whole record of each kind, indexed by [`Kept`].
     pub newest: [Option<Entry>; Kept::ALL.len()],
-    /// For each kind, whether a damaged or unfinished record of it follows the newest whole one.
+    /// A damaged or unfinished record follows the newest whole one, by kind.
     pub damaged: [bool; Kept::ALL.len()],
-    /// The highest sequence number of the sector's whole records, 0 if it has none.
     pub last_sequence: u32,
-    /// Offset of the first word of the blank rest, words.
     pub end: usize,
 }
 
@@ -78,8 +66,8 @@ impl Survey {
         survey
     }
 
-    /// Takes what begins at `at`; where the next may begin. Only a record that checks out is skipped by its length: a tag
-    /// that a power cut left half programmed may name any length, and another one each time it is read.
+    /// Gives where the next record may begin. Only a record that checks out is skipped by its length: a half
+    /// programmed tag may name any length, and another one each time it is read.
     fn look_at(&mut self, area: &impl FlashArea, at: usize) -> usize {
         let word = area.read(self.sector, at);
         if word == BLANK {
@@ -110,20 +98,17 @@ impl Survey {
         self.last_sequence = self.last_sequence.max(entry.sequence);
     }
 
-    /// Rank of the sector; records are appended to the one of higher rank. Sectors with equal sequence numbers are a copy and its
-    /// original; a finished copy has opening words of a later generation.
+    /// Records are appended to the sector of higher rank. Equal sequence numbers are a copy and its original;
+    /// a finished copy has a later generation.
     pub fn rank(&self) -> (u32, u32) {
         (self.last_sequence, self.generation.unwrap_or(0))
     }
 }
 
-/// Whether no word of the sector has been programmed.
 pub fn is_blank(area: &impl FlashArea, sector: Sector) -> bool {
     (0..area.sector_words()).all(|word| area.read(sector, word) == BLANK)
 }
 
-/// Writes the opening words (magic, `generation`, CRC-32) of an erased sector, so that records can be appended. Fails
-/// if a word cannot be programmed or reads back differently.
 pub fn write_opening(area: &mut impl FlashArea, sector: Sector, generation: u32) -> Result<(), FlashFailed> {
     for (n, word) in opening(generation).into_iter().enumerate() {
         super::program(area, sector, n, word)?;

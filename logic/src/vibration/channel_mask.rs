@@ -1,21 +1,14 @@
-//! Masks a PVDF channel that alone reports vibration again and again: it is broken, and nothing slips.
-//!
-//! Slip begins in one place, but the next pulse of the reflex ends it, or all channels come to show it. One that goes on
-//! alone has hum, a bad contact or a cracked film: it may close the hand once, and is masked from then on until it has been
-//! quiet for a while.
+//! Masks a PVDF channel that alone reports vibration again and again: hum, a bad contact or a cracked film.
+//! It may close the hand once, and is masked until it has been quiet for a while.
 
-use tenax_hal_shim::channel::PVDF_COUNT;
+use tenax_hal_shim::channel::{PVDF_COUNT, frames};
 
-use tenax_hal_shim::channel::frames;
-
-/// Time for which a channel may be loud alone before it is masked, frames.
+/// Longest loudness alone before a channel is masked.
 const ALONE_FRAMES: u32 = frames(150);
-/// Time of silence after which a masked channel is believed again, frames.
+/// Silence after which a masked channel is believed again.
 const QUIET_FRAMES: u32 = frames(10_000);
-/// Weight of a frame in which the channel is loud alone against one in which it is not.
 const WEIGHT: u32 = 8;
 
-/// Masked channels, and the count of loud frames of the channel that is loud alone.
 #[derive(Clone, Debug, Default)]
 pub struct ChannelMask {
     masked: u16,
@@ -25,24 +18,21 @@ pub struct ChannelMask {
 }
 
 impl ChannelMask {
-    /// The masked channels, one bit each, film 1 lowest.
+    /// One bit each, film 1 lowest.
     pub const fn masked(&self) -> u16 {
         self.masked
     }
 
-    /// Whether this channel is masked.
-    #[must_use]
     pub const fn is_masked(&self, channel: usize) -> bool {
         self.masked >> channel & 1 != 0
     }
 
-    /// Counts a frame in which no channel is loud.
     #[inline]
     pub const fn count_quiet(&mut self) {
         self.alone = self.alone.saturating_sub(1);
     }
 
-    /// Counts a frame in which a channel's envelope is above `on`, Q16 samples.
+    /// `on`: threshold, Q16 samples.
     #[inline(never)]
     pub fn count_loud(&mut self, envelopes: &[i32; PVDF_COUNT], on: i32) {
         let mut above = envelopes.iter().enumerate().filter(|(_, own)| **own > on / 4);
@@ -60,7 +50,7 @@ impl ChannelMask {
         }
     }
 
-    /// Takes a masked channel's envelope, Q16 samples. It is unmasked when it has been far below `on` for long enough.
+    /// Unmasked when the envelope has been far below `on` for long enough; Q16 samples.
     pub fn check_masked(&mut self, channel: usize, envelope: i32, on: i32) {
         let Some(quiet) = self.quiet.get_mut(channel) else {
             return;

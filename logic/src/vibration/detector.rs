@@ -6,7 +6,6 @@ use tenax_hal_shim::detector::{DetectorHealth, DetectorId, Direction};
 use crate::detectors::{Description, Detector, Said, Sensed, confidence};
 use crate::vibration::settings::VibrationConfig;
 
-/// The last verdict of S1.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct S1 {
     level: u16,
@@ -15,14 +14,13 @@ pub struct S1 {
 
 impl Detector for S1 {
     const ID: DetectorId = DetectorId::S1;
-    // An impact, a stroke over a table and the motor vibrate an empty hand too, and are soon over; a film that hums is not.
+    // Impacts, strokes over a table and the motor vibrate an empty hand too, and are soon over.
     const IMPLAUSIBLE_AFTER: u16 = SLOW_HZ as u16 / 2;
     type Config = VibrationConfig;
 
     fn step(&mut self, _config: &VibrationConfig, sensed: &Sensed<'_>) -> Option<Said> {
         self.level = sensed.vibration.level;
         self.health = if sensed.vibration_known { DetectorHealth::Working } else { DetectorHealth::Blind };
-        // What is heard far below the threshold is answered as a warning is.
         Some(Said { slip: sensed.vibration.s1, incipient: sensed.vibration.slides })
     }
 

@@ -1,32 +1,21 @@
-//! Conditioning of one film: the envelope of its slip band, and the size of the vibration above the band.
-//!
-//! Its sample, less the mains' [`hum`](super::hum), goes through a high-pass (offset, drift and slow contact go), a low-pass, a
-//! rectifier (the sign of a film means nothing: Tada 2006, section 2) and a second low-pass. What the low-pass took away is
-//! rectified too.
-//!
-//! Fixed point: samples (14 bits, offset binary) are taken around mid-scale and shifted to Q16, 2^16 a sample. The
-//! filters ([`LowPass`]) keep 32 bits: what that rounds away is at most 0.0006 of a sample of any envelope, below 0.001, which
-//! is the bound of the tests against `f64`.
+//! Conditioning of one film: less the mains' [`hum`](super::hum), high-pass, low-pass, rectifier (the sign of
+//! a film means nothing: Tada 2006, section 2), second low-pass. Samples around mid-scale in Q16; the filters
+//! round away at most 0.0006 of a sample of any envelope.
 
 use super::hum::{Mains, Turn, Weights};
 use crate::low_pass::LowPass;
 
-/// Lower edge of the slip band, Hz.
 const BAND_LOW_HZ: u32 = 20;
-/// Upper edge of the slip band, Hz.
 const BAND_HIGH_HZ: u32 = 150;
-/// Time constant of the envelope, us.
 const ENVELOPE_US: u32 = 8_000;
 
-/// Fraction bits of a conditioned sample.
 pub(crate) const Q: u32 = 16;
-/// The sample in the middle of the converter's range.
 const MIDDLE: i32 = 1 << 13;
 
 pub(super) static ENVELOPE: LowPass = LowPass::of(1e6 / (2.0 * core::f64::consts::PI * ENVELOPE_US as f64));
 
-/// The edges of the slip band. Whoever has films keeps them in memory: of a constant the compiler makes a product of 64 bits, in four
-/// instructions instead of one.
+/// Kept in memory: of a constant the compiler makes a product of 64 bits, in four instructions instead of
+/// one.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Band {
     low: LowPass,
@@ -39,7 +28,6 @@ impl Default for Band {
     }
 }
 
-/// The state of one film's conditioning.
 #[derive(Clone, Debug, Default)]
 pub struct Film {
     offset: i32,
@@ -49,22 +37,20 @@ pub struct Film {
     primed: bool,
 }
 
-/// Vibration of one film, Q16 samples (14 bits).
+/// Q16 samples (14 bits).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Levels {
-    /// Envelope in the slip band, `BAND_LOW_HZ` to `BAND_HIGH_HZ`.
     pub envelope: i32,
-    /// Size of the vibration above the slip band in this tick.
     pub above: i32,
 }
 
 impl Film {
-    /// The film's envelope, Q16 samples, also of a masked film.
+    /// Q16 samples, also of a masked film.
     pub const fn level(&self) -> i32 {
         self.envelope
     }
 
-    /// Takes the first sample as the offset, so that power-up is no vibration; later calls change nothing.
+    /// The first sample is the offset, so that power-up is no vibration; later calls change nothing.
     pub fn prime(&mut self, sample: u16) {
         if !self.primed {
             self.offset = centred(sample);
@@ -72,7 +58,6 @@ impl Film {
         }
     }
 
-    /// Takes a 14-bit sample of a film that was primed.
     #[inline]
     pub fn process(&mut self, band: &Band, sample: u16, mains: Turn) -> Levels {
         let x = centred(sample).wrapping_sub(self.hum.heard(mains));
@@ -81,7 +66,6 @@ impl Film {
         Levels { envelope: ENVELOPE.process(&mut self.envelope, low.abs()), above: (ac - low).abs() }
     }
 
-    /// One step of learning the mains' hum.
     #[inline]
     pub fn adapt(&mut self, mains: &mut Mains, mains_60_hz: bool) {
         mains.adapt(mains_60_hz, &mut self.hum, self.band);
@@ -89,7 +73,6 @@ impl Film {
 }
 
 impl Levels {
-    /// Raises each part to that of `other` if it is larger.
     #[inline]
     pub fn raise(&mut self, other: Self) {
         self.envelope = self.envelope.max(other.envelope);
@@ -97,7 +80,6 @@ impl Levels {
     }
 }
 
-/// A 14-bit sample around mid-scale, Q16.
 #[inline]
 const fn centred(sample: u16) -> i32 {
     (sample as i32 - MIDDLE) << Q
@@ -109,7 +91,6 @@ mod tests {
     use core::f64::consts::PI;
     use tenax_hal_shim::channel::{FRAME_HZ, SAMPLE_MAX};
 
-    /// The same conditioning in `f64`, from the same transfer function (bilinear, unwarped gain k).
     #[derive(Default)]
     struct Reference([f64; 3], bool);
 

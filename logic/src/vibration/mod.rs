@@ -1,11 +1,7 @@
-//! S1: slip from the vibration of the PVDF films (Prosthesis, sections 4 and 5).
-//!
-//! Of each film its conditioning (`film`) gives the envelope of the slip band, 20 to 150 Hz, and the size of what is above it.
-//! The loudest film's of the latter goes through one more low-pass: the envelope above the band. The bands are those of real
-//! slip onsets, which have 83 to 94 % of their energy below 100 Hz and 1 to 3 % above 200 Hz.
-//!
-//! An impact is as loud as slip or louder, but rings above the band, and is over soon. So S1 needs a loud band, and a
-//! quieter sound above it, or a sound that stays.
+//! S1: slip from the vibration of the PVDF films (Prosthesis, sections 4 and 5). The slip band is 20 to 150
+//! Hz: real onsets have 83 to 94 % of their energy below 100 Hz and 1 to 3 % above 200 Hz. An impact rings
+//! above the band and is over soon, so S1 needs a loud band with a quieter sound above it, or a sound that
+//! stays.
 
 pub mod channel_mask;
 pub mod detector;
@@ -30,49 +26,41 @@ const IMPACT_RINGS: u32 = 12;
 /// A peak of the envelope is forgotten over `2^PEAK_SHIFT` frames, 0.13 s.
 const PEAK_SHIFT: u32 = 8;
 
-/// Validity of a film's sample.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Trust {
-    /// The sample is valid.
     #[default]
     Full,
-    /// The film may be freezing: its last jump must not count as slip.
+    /// It may be freezing: its last jump must not count as slip.
     Doubtful,
-    /// The sample is not valid.
     None,
 }
 
-/// Vibration of all films in one tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Vibration {
-    /// Envelope of the loudest film, samples (14 bits).
+    /// Samples (14 bits).
     pub level: u16,
-    /// Whether S1 reports slip: the level is above the threshold, and the vibration is no impact.
+    /// Above the threshold, and no impact.
     pub s1: bool,
-    /// Whether the vibration rings above the slip band, and not for longer than an impact.
+    /// Rings above the slip band, and not for longer than an impact.
     pub impact: bool,
-    /// Whether the object slides steadily, far below S1 (see [`sliding`]).
     pub slides: bool,
-    /// The films that are masked because each was loud alone, a bit each.
+    /// Films that were loud alone, a bit each.
     pub masked: u16,
 }
 
-/// Filters of the films, S1, impacts and steady sliding.
 #[derive(Clone, Debug, Default)]
 pub struct VibrationDetector {
     films: [Film; PVDF_COUNT],
     band: Band,
     mains: Mains,
     envelopes: [i32; PVDF_COUNT],
-    /// Whether no film waits for its first sample.
     all_primed: bool,
     above: i32,
     loud_frames: u32,
     ringing_frames: u32,
-    /// The largest envelope since the vibration became loud, slowly decaying, and the number of loud frames until it.
+    /// Largest envelope since the vibration became loud, slowly decaying, and the loud frames until it.
     peak: i32,
     peak_at: u32,
-    /// Frames of ringing since the vibration became loud.
     rang_frames: u32,
     s1: bool,
     mask: ChannelMask,
@@ -81,7 +69,7 @@ pub struct VibrationDetector {
 }
 
 impl VibrationDetector {
-    /// Takes every film's 14-bit sample of one tick, and the validity of each: None if all are valid.
+    /// 14-bit samples of one tick. `trusts` None: all are valid.
     #[inline(always)]
     pub fn process(
         &mut self,
@@ -103,7 +91,7 @@ impl VibrationDetector {
         self.judge(config, loudest)
     }
 
-    /// Resets a film's filters: another sensor takes its place, and the jump is no vibration.
+    /// Another sensor takes the film's place, and the jump is no vibration.
     pub fn forget(&mut self, film: usize) {
         if let Some(film) = self.films.get_mut(film) {
             *film = Film::default();
@@ -111,7 +99,6 @@ impl VibrationDetector {
         }
     }
 
-    /// The validity of all samples, with those of masked films doubtful.
     #[inline(never)]
     fn with_masks(
         &mut self,
@@ -129,7 +116,6 @@ impl VibrationDetector {
         masked
     }
 
-    /// Every film at once, when all of them can be believed: the usual tick.
     #[inline]
     fn process_all(&mut self, samples: &[u16; PVDF_COUNT], mains: Turn) -> Levels {
         let mut loudest = Levels::default();
@@ -156,7 +142,7 @@ impl VibrationDetector {
             // Suspect PVDF channels are masked, their held envelope included.
             *own = 0;
             if trust == Trust::None {
-                // Primed anew when it comes back: its jump back is no vibration.
+                // Primed anew when it comes back: its jump is no vibration.
                 *film = Film::default();
                 self.all_primed = false;
                 continue;
@@ -171,7 +157,6 @@ impl VibrationDetector {
         loudest
     }
 
-    /// Judges the loudest film's levels of this tick.
     fn judge(&mut self, config: &VibrationConfig, loudest: Levels) -> Vibration {
         let Levels { envelope, above } = loudest;
         let asked = self.mains.asks().filter(|_| self.loud_frames == 0);
@@ -180,7 +165,7 @@ impl VibrationDetector {
         }
         let above = ENVELOPE.process(&mut self.above, above);
         let on = i32::from(config.s1) << Q;
-        // Once on, half the threshold keeps it on: the envelope of one slip has dips.
+        // Half the threshold keeps it on: the envelope of one slip has dips.
         let loud = envelope > if self.s1 { on / 2 } else { on };
         if loud {
             self.mask.count_loud(&self.envelopes, on);
@@ -198,8 +183,7 @@ impl VibrationDetector {
             self.peak = envelope;
             self.peak_at = self.loud_frames;
         }
-        // What has rung is an impact until it has lasted longer than one and has not died away as one: an impact is loudest as
-        // it begins.
+        // An impact is loudest as it begins, and short.
         let lasts = self.loud_frames >= config.impact_frames && 4 * self.peak_at >= 3 * config.impact_frames;
         let impact = rings || self.rang_frames >= IMPACT_RINGS;
         self.s1 = loud && (self.s1 || !impact || lasts);
@@ -212,12 +196,12 @@ impl VibrationDetector {
         }
     }
 
-    /// Detects steady sliding. Call it once a slow frame.
+    /// Call it once a slow frame.
     pub fn slow(&mut self, hand: &Hand) {
         self.slides = self.sliding.step(&self.envelopes, self.above, hand);
     }
 
-    /// Each film's envelope in the slip band, Q16 samples; 0 of one that gives no number.
+    /// Envelopes in the slip band, Q16 samples; 0 of a film without a number.
     pub const fn envelopes(&self) -> &[i32; PVDF_COUNT] {
         &self.envelopes
     }

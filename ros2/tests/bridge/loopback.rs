@@ -19,7 +19,7 @@ use zenoh::{Session, Wait};
 const WITHIN: Duration = Duration::from_secs(10);
 
 /// A gripper that touches nothing: at its start the board consents.
-const CONSENTING: &str = include_str!("../examples/open.toml");
+const CONSENTING: &str = include_str!("open.toml");
 
 struct Ros<'a> {
     session: &'a Session,

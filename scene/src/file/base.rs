@@ -14,27 +14,21 @@ use toml::de::{DeTable, DeValue};
 
 use super::SceneError;
 
-/// File and text of a base by its name, if there is one.
 pub type Find<'a> = &'a dyn Fn(&str) -> Option<(String, Cow<'static, str>)>;
 
 const BASE: &str = "base";
 const WITHOUT: &str = "without";
-/// What a scene says for itself.
 const OWN: [&str; 2] = ["name", "title"];
 
-/// One file of a scene.
 struct Source {
     file: String,
     text: Cow<'static, str>,
-    /// Where its first byte stands among all of them.
     start: usize,
 }
 
-/// The files of a scene: its own, its base, its base's base.
 pub(super) struct Sources(Vec<Source>);
 
 impl Sources {
-    /// Reads what the scene stands on.
     pub(super) fn read(text: &str, file_name: &str, find: Find<'_>) -> Result<Self, SceneError> {
         let mut sources = Self(Vec::new());
         let mut next = Some((file_name.to_owned(), Cow::Owned(text.to_owned()), 0..0));
@@ -49,7 +43,6 @@ impl Sources {
         Ok(sources)
     }
 
-    /// The base of the last one.
     #[expect(clippy::type_complexity, reason = "the next source and where it is asked for, used once")]
     fn next(&self, find: Find<'_>) -> Result<Option<(String, Cow<'static, str>, Range<usize>)>, SceneError> {
         let Some(last) = self.0.last() else { return Ok(None) };
@@ -68,7 +61,6 @@ impl Sources {
         }
     }
 
-    /// One table of all of them, the scene's own before its base's.
     pub(super) fn merged(&self) -> Result<Spanned<DeTable<'_>>, SceneError> {
         let mut sources = self.0.iter().rev();
         let Some(first) = sources.next() else { return Ok(Spanned::new(0..0, DeTable::new())) };
@@ -86,7 +78,6 @@ impl Sources {
         Ok(Spanned::new(span, whole))
     }
 
-    /// Takes away what a scene does without.
     fn leave_out(
         &self,
         without: Option<Spanned<DeValue<'_>>>,
@@ -106,7 +97,6 @@ impl Sources {
         Ok(())
     }
 
-    /// A file's table, its spans among all files.
     fn table<'a>(&'a self, source: &'a Source) -> Result<DeTable<'a>, SceneError> {
         let table = DeTable::parse(&source.text).map_err(|error| {
             let span = error.span().unwrap_or(0..0);
@@ -124,7 +114,6 @@ impl Sources {
         self.0.iter().rev().find(|source| source.start <= span.start).unwrap_or(&self.0[0])
     }
 
-    /// What is wrong, in the file in which it stands.
     pub(super) fn wrong(&self, span: Range<usize>, mut what: String) -> SceneError {
         let source = self.source(&span);
         if source.start > 0 {
@@ -133,7 +122,6 @@ impl Sources {
         SceneError::at(span.start - source.start, what, &source.text, &source.file)
     }
 
-    /// `toml` says what is wrong and where, but not with which key: that stands before it in the line.
     pub(super) fn of_toml(&self, span: Range<usize>, message: &str) -> SceneError {
         let message = message.replace('\n', "; ");
         let source = self.source(&span);
@@ -150,7 +138,6 @@ impl Sources {
     }
 }
 
-/// Puts a scene's own words over those of its base.
 fn put_over<'a>(own: DeTable<'a>, base: &mut DeTable<'a>) {
     for (key, value) in own {
         let span = value.span();
@@ -189,7 +176,6 @@ fn moved<T>(one: Spanned<T>, by: usize) -> Spanned<T> {
     Spanned::new(span.start + by..span.end + by, one.into_inner())
 }
 
-/// How many near matches are offered.
 const OFFERED: usize = 4;
 
 fn near(name: &str) -> String {

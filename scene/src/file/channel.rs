@@ -8,7 +8,6 @@ use tenax_hal_shim::channel::{CHANNELS, by_name};
 #[serde(try_from = "String")]
 pub struct ChannelName(usize);
 
-/// No channel is called so.
 #[derive(Debug, thiserror::Error)]
 #[error("no channel is called `{name}`; near it: {near}")]
 pub struct NoSuchChannel {
@@ -16,7 +15,6 @@ pub struct NoSuchChannel {
     near: String,
 }
 
-/// How many near matches are offered.
 const OFFERED: usize = 4;
 
 impl ChannelName {

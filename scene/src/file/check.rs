@@ -1,4 +1,4 @@
-//! What no single number can know: whether the numbers of a scene fit each other.
+//! Checks of the numbers of a scene against each other.
 
 use std::ops::Range;
 
@@ -11,7 +11,6 @@ use super::quantity::{Instant, Mu};
 use super::sections::{Command, CommandKind, FaultKind, Level, SensorFault};
 use super::step::step;
 
-/// The first thing that does not fit.
 pub(super) struct Wrong {
     pub(super) span: Range<usize>,
     pub(super) what: String,
@@ -44,7 +43,7 @@ pub(super) fn check(scene: &SceneFile) -> Checked {
         })?;
     }
     scene.fault.iter().try_for_each(fault)?;
-    scene.command.iter().try_for_each(|one| command(scene, one))
+    scene.command.iter().try_for_each(command)
 }
 
 fn friction(scene: &SceneFile) -> Checked {
@@ -61,7 +60,6 @@ fn friction(scene: &SceneFile) -> Checked {
     Ok(())
 }
 
-/// What belongs to one level of contact stands only where that level is.
 fn level(scene: &SceneFile) -> Checked {
     let contact = &scene.contact;
     let skin = contact.skin_n_per_mm.as_ref().map(|skin| ("skin_n_per_mm", skin.span()));
@@ -83,7 +81,6 @@ fn level(scene: &SceneFile) -> Checked {
     Ok(())
 }
 
-/// Everything happens within the scene.
 fn instants(scene: &SceneFile) -> Checked {
     let mut all: Vec<&Spanned<Instant>> = Vec::new();
     all.extend(scene.wet.iter().flat_map(|wet| [Some(&wet.at_s), wet.until_s.as_ref()]).flatten());
@@ -116,7 +113,6 @@ fn instants(scene: &SceneFile) -> Checked {
     Ok(())
 }
 
-/// A scene grasps an object or strokes a surface, and says only what belongs to its own.
 fn one_story(scene: &SceneFile) -> Checked {
     match (&scene.object, &scene.robot) {
         (Some(_), Some(robot)) => Err(Wrong {
@@ -128,11 +124,8 @@ fn one_story(scene: &SceneFile) -> Checked {
             what: "a scene needs [object] (something to grasp) or [robot] (strokes a surface)".to_owned(),
         }),
         (Some(_), None) => {
-            let foreign = scene
-                .press
-                .iter()
-                .map(|press| &press.at_s)
-                .chain(scene.sweep.iter().map(|sweep| &sweep.at_s));
+            let press = scene.press.iter().map(|press| &press.at_s);
+            let foreign = press.chain(scene.sweep.iter().map(|sweep| &sweep.at_s));
             refuse(foreign, "[[press]] and [[sweep]] are the robot's; this scene has an [object]")
         }
         (None, Some(_)) => {
@@ -140,14 +133,13 @@ fn one_story(scene: &SceneFile) -> Checked {
                 let what = "[pitch] needs an [object]; this scene has a [robot]".to_owned();
                 return Err(Wrong { span: pitch.span(), what });
             }
-            let foreign = scene.fill.iter().map(|fill| &fill.at_s);
-            let foreign = foreign.chain(scene.moves.iter().map(|step| &step.at_s));
-            let foreign = foreign.chain(scene.swing.iter().map(|swing| &swing.at_s));
-            let foreign = foreign.chain(scene.pull.iter().map(|pull| &pull.at_s));
-            refuse(
-                foreign,
-                "[[fill]], [[move]], [[swing]] and [[pull]] need an [object]; this scene has a [robot]",
-            )
+            let what =
+                "[[fill]], [[move]], [[swing]] and [[pull]] need an [object]; this scene has a [robot]";
+            let fill_move =
+                scene.fill.iter().map(|fill| &fill.at_s).chain(scene.moves.iter().map(|go| &go.at_s));
+            let swing_pull =
+                scene.swing.iter().map(|swing| &swing.at_s).chain(scene.pull.iter().map(|pull| &pull.at_s));
+            refuse(fill_move.chain(swing_pull), what)
         }
     }
 }
@@ -182,7 +174,6 @@ fn fault(fault: &SensorFault) -> Checked {
     )
 }
 
-/// A key that faults of one kind need, and no other takes.
 fn only(is_it: bool, key: Option<Range<usize>>, fault: &SensorFault, kind: &str, name: &str) -> Checked {
     match key {
         None => demand(!is_it, fault.channel.span(), || format!("kind = \"{kind}\" needs {name}")),
@@ -193,7 +184,7 @@ fn only(is_it: bool, key: Option<Range<usize>>, fault: &SensorFault, kind: &str,
     }
 }
 
-fn command(scene: &SceneFile, command: &Command) -> Checked {
+fn command(command: &Command) -> Checked {
     let kind = *command.kind.get_ref();
     let wrong = |span, what: String| Err(Wrong { span, what });
     match kind {
@@ -220,7 +211,7 @@ fn command(scene: &SceneFile, command: &Command) -> Checked {
                 return wrong(command.kind.span(), "a setting needs value".to_owned());
             };
             let row = id.row();
-            let range = row.range_in_force(scene.trusts_line());
+            let range = row.range();
             demand(range.contains(value.get_ref()), value.span(), || {
                 format!(
                     "value = {} {} is outside {}..={} of {}",

@@ -1,4 +1,4 @@
-//! What a scene file need not say: the hand and its sensors, each number with its source.
+//! Defaults of the hand and its sensors, each number with its source.
 
 use toml::Spanned;
 

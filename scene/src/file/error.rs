@@ -1,6 +1,5 @@
-//! What is wrong with a scene file, in one line.
+//! An error of a scene file, in one line.
 
-/// Where it is wrong, and what is allowed.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{file}:{line}: {what}")]
 pub struct SceneError {
@@ -10,7 +9,6 @@ pub struct SceneError {
 }
 
 impl SceneError {
-    /// At byte `start` of the file's text.
     pub(super) fn at(start: usize, what: String, text: &str, file: &str) -> Self {
         let before = text.get(..start).unwrap_or(text);
         Self { file: file.to_owned(), line: before.matches('\n').count() + 1, what }

@@ -1,23 +1,18 @@
-//! What happens in a scene, as its file says: what scores are counted by.
+//! Events of a scene, as its file says: scores are counted by them.
 
 use super::SceneFile;
 
 /// A knock is over after this many times its decay: then it is below a hundredth of its peak.
 const KNOCK_DECAYS: f64 = 5.0;
 
-/// Something that happens to what is held.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Happening {
-    /// It gets heavier or lighter.
     Pour,
-    /// The hand, or a stroking probe, moves.
     Move,
-    /// It is knocked, swung or shaken.
     Disturb,
 }
 
 impl SceneFile {
-    /// From, to, s, and what.
     pub fn happenings(&self) -> Vec<(f64, f64, Happening)> {
         let from = |at_s: f64, for_s: f64, what| (at_s, at_s + for_s, what);
         let fills =

@@ -1,16 +1,17 @@
 //! Scene files: TOML in, a checked [`SceneFile`] out, or one message that says where and what is allowed.
 
-pub mod base;
-pub mod channel;
+mod base;
+mod channel;
 mod check;
 mod defaults;
 mod error;
 mod happening;
-pub mod quantity;
-pub mod sections;
+pub(crate) mod quantity;
+pub(crate) mod sections;
 mod step;
 
-use base::{Find, Sources};
+pub use base::Find;
+use base::Sources;
 use serde::Deserialize;
 use std::ops::Range;
 use tenax_hal_shim::channel::MYO_FLEXOR;
@@ -28,18 +29,14 @@ use sections::{
     Sweep, Swing, Table, Vibrator, Wet,
 };
 
-/// A whole scene, every number in it checked.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SceneFile {
-    /// What it is called on the command line.
     pub name: String,
-    /// What happens, in one line.
     pub title: String,
     /// The paper and section that it is made after.
     pub from: String,
     duration_s: Duration,
-    /// The relative speed above which the object counts as slipping.
     slip_floor_mm_s: Speed,
     #[serde(default)]
     pub(crate) arm: Arm,
@@ -122,13 +119,10 @@ impl SceneFile {
             .map_err(|error| sources.of_toml(error.span().unwrap_or(0..0), error.message()))
     }
 
-    /// Whether the board trusts its serial line. Unless the file says so, it does where somebody sends something: a scene is a
-    /// laboratory, and its script stands for one who has set `line-trusted-flag` before.
     pub fn trusts_line(&self) -> bool {
         self.line_trusted.unwrap_or(!self.command.is_empty() || self.camera.teaches || self.skin.is_some())
     }
 
-    /// Whether somebody sets the board up for a photoelastic head.
     pub fn fits_head(&self) -> bool {
         let fits = |command: &Command| {
             *command.kind.get_ref() == CommandKind::Set(SettingId::Head)
@@ -137,7 +131,6 @@ impl SceneFile {
         self.command.iter().any(fits)
     }
 
-    /// When which myosensor's electrode is off, and hears no muscle whatever it gives: 0 the flexor's, and s.
     pub fn lifts(&self) -> impl Iterator<Item = (usize, Range<f64>)> + '_ {
         self.electrode_lift.iter().map(|lift| {
             let at_s = lift.at_s.get_ref().get();
@@ -149,7 +142,6 @@ impl SceneFile {
         self.duration_s.get()
     }
 
-    /// The relative speed above which the object counts as slipping, mm/s.
     pub const fn slip_floor_mm_s(&self) -> f64 {
         self.slip_floor_mm_s.get()
     }

@@ -1,4 +1,4 @@
-//! Whether one scan is a short enough step for what a scene asks for, twice over (`docs/stepping.md`).
+//! Check that the step of one scan fits twice into each bound (`docs/stepping.md`).
 
 use super::SceneFile;
 use super::check::{Checked, demand};
@@ -9,7 +9,6 @@ use crate::schedule::STEP_S;
 /// The step must go into each bound at least so often.
 const MARGIN: f64 = 2.0;
 
-/// Everything of the scene whose step has a bound.
 pub(super) fn step(scene: &SceneFile) -> Checked {
     if let Some(object) = &scene.object {
         let mat =
@@ -52,7 +51,6 @@ fn mat_s(scene: &SceneFile, object: &Object) -> f64 {
     bounds::semi_implicit_oscillator_s(lightest_kg, mat_n_per_m, mat_ns_per_m)
 }
 
-/// The longest step in which the gripper does not press harder than it can, s.
 fn gripper_s(scene: &SceneFile, object: &Object) -> f64 {
     let stiffness_n_per_m = object.stiffness_n_per_mm.get() * 1e3;
     bounds::gripper_s(scene.gripper.force_n.get(), stiffness_n_per_m, scene.gripper.speed_mm_s.get() / 1e3)

@@ -11,17 +11,14 @@ pub const ELEMENTS: NonZeroU16 = NonZeroU16::new(24).unwrap();
 pub struct Pad {
     /// Radius a of the contact, m. It is kept under every load: a fingertip that is flattened already. Assumed.
     pub radius_m: f64,
-    /// Shear stiffness k per area, N/m^3.
     pub stiffness_n_per_m3: f64,
 }
 
 impl Pad {
-    /// Of the whole patch while all of it sticks, `k pi a^2`, N/m.
     pub fn stiffness_n_per_m(&self) -> f64 {
         self.stiffness_n_per_m3 * self.area_m2()
     }
 
-    /// The displacement at which the last element lets go, `mu p0 / k`, m: `s` is the displacement over it.
     pub fn macro_slip_m(&self, normal_n: f64, mu: f64) -> f64 {
         mu * 1.5 * normal_n / self.stiffness_n_per_m()
     }
@@ -31,37 +28,28 @@ impl Pad {
     }
 }
 
-/// One ring of the patch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Element {
     area_part: f64,
     load_part: f64,
-    /// Of the ring while it sticks, N/m.
     stiffness_n_per_m: f64,
     bristle_m: f64,
     sticks: bool,
 }
 
-/// What a step of the patch did.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Outcome {
-    /// Shear Q after the step, N, against the displacement.
     pub shear_n: f64,
-    /// Elements that let go in this step.
     pub let_go: usize,
-    /// The shear that they let go of, N.
     pub released_n: f64,
-    /// The part of the area that sticks after the step.
     pub stuck_part: f64,
 }
 
-/// The patch: rings whose pressures are evenly spaced.
+/// A patch of rings whose pressures are evenly spaced.
 ///
 /// With `w = p / p0 = sqrt(1 - (r/a)^2)` a ring between `w1` and `w2` has the area part `w2^2 - w1^2` and the load part
-/// `w2^3 - w1^3`, both exact. So the patch carries its load and its stiffness exactly at every N, each ring that only
-/// sticks or only slides is exact too, and the one that the edge of the stick zone crosses is all of the error: second
-/// order in 1/N. Evenly spaced radii would squeeze the edge, where the pressure falls like a root, into one ring. And the
-/// rings let go at evenly spaced displacements, which is how the events should come.
+/// `w2^3 - w1^3`, both exact. Only the ring that the edge of the stick zone crosses is in error, of second order in 1/N, and the
+/// rings let go at evenly spaced displacements.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BrushPatch {
     pad: Pad,
@@ -69,7 +57,6 @@ pub struct BrushPatch {
 }
 
 impl BrushPatch {
-    /// At rest, loose.
     pub fn new(pad: Pad, elements: NonZeroU16) -> Self {
         let edge = |n: u16| f64::from(n) / f64::from(elements.get());
         let ring = |n: u16| {
@@ -120,7 +107,6 @@ impl BrushPatch {
         outcome
     }
 
-    /// The part of the radius that sticks, c/a.
     pub fn stick_radius_part(&self) -> f64 {
         self.elements
             .iter()
@@ -130,7 +116,6 @@ impl BrushPatch {
             .sqrt()
     }
 
-    /// Whether none of it sticks.
     pub fn is_sliding(&self) -> bool {
         self.elements.iter().all(|element| !element.sticks)
     }
@@ -144,7 +129,6 @@ impl BrushPatch {
 
 /// The closed forms, for one friction coefficient, with `s = k delta / (mu p0)` from 0 to 1.
 pub mod closed_form {
-    /// Q / (mu P) of the brush: (3 s - s^3) / 2.
     pub fn shear(s: f64) -> f64 {
         (3.0 * s - s * s * s) / 2.0
     }
@@ -154,7 +138,6 @@ pub mod closed_form {
         (1.0 - s * s).max(0.0).sqrt()
     }
 
-    /// Q / P of the brush where what slides has mu_d and `s` is reckoned with mu_s: `1.5 mu_s s (1 - s^2) + mu_d s^3`.
     pub fn shear_with_drop(s: f64, friction: super::Friction) -> f64 {
         1.5 * friction.mu_s * s * (1.0 - s * s) + friction.mu_d * s * s * s
     }
@@ -162,18 +145,5 @@ pub mod closed_form {
     /// The s of its greatest shear: `sqrt(mu_s / (3 mu_s - 2 mu_d))`. Whoever pulls harder than there loses all of it.
     pub fn peak(friction: super::Friction) -> f64 {
         (friction.mu_s / (3.0 * friction.mu_s - 2.0 * friction.mu_d)).sqrt()
-    }
-
-    /// Q / (mu P) of the elastic half-space (Cattaneo 1938, Mindlin 1949): 1 - (1 - s)^1.5.
-    ///
-    /// With the same stiffness at rest (`k pi a^2 = 8 G* a`) both let go altogether at the same displacement, so `s`
-    /// means the same.
-    pub fn half_space_shear(s: f64) -> f64 {
-        1.0 - (1.0 - s) * (1.0 - s).sqrt()
-    }
-
-    /// c / a of the elastic half-space under a shear of `q` = Q / (mu P): (1 - q)^(1/3).
-    pub fn half_space_stick_radius(q: f64) -> f64 {
-        libm::cbrt(1.0 - q)
     }
 }

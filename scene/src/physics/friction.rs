@@ -6,7 +6,6 @@ use crate::schedule::{Span, smooth};
 /// Coulomb's two coefficients at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Friction {
-    /// Static: shear over normal force at which it begins to slide.
     pub mu_s: f64,
     /// Dynamic: shear over normal force while it slides. At most `mu_s`.
     pub mu_d: f64,
@@ -16,14 +15,13 @@ pub struct Friction {
 const SLOWEST_M_S: f64 = 1e-3;
 
 impl Friction {
-    /// What a speed of `speed_m_s` adds to `mu_d` where friction rises by `per_decade` of it with each tenfold speed:
+    /// Rise of `mu_d` at `speed_m_s` where friction rises by `per_decade` of it with each tenfold speed:
     /// `mu_d k log10(1 + v / v_0)`, as rubber's does below its peak (Grosch 1963; that it is a straight line over the
     /// logarithm is assumed).
     pub fn rise(self, per_decade: f64, speed_m_s: f64) -> f64 {
         self.mu_d * per_decade * libm::log10(1.0 + speed_m_s / SLOWEST_M_S)
     }
 
-    /// The same as damping: what it adds over the speed, s/m. At rest it is the slope.
     pub fn rise_s_per_m(self, per_decade: f64, speed_m_s: f64) -> f64 {
         // Below a thousandth of the slowest the quotient is the slope to four places.
         let speed_m_s = speed_m_s.max(1e-3 * SLOWEST_M_S);
@@ -31,10 +29,9 @@ impl Friction {
     }
 }
 
-/// How long somebody takes to wet or dry it, s (assumed).
+/// Time to wet or dry a surface, s (assumed).
 const WETS_S: f64 = 0.02;
 
-/// Friction over time: dry, with wet patches.
 #[derive(Clone, Debug)]
 pub struct Surface {
     dry: Friction,
@@ -64,7 +61,6 @@ impl Surface {
         }
     }
 
-    /// Somebody wets it, which halves friction; or dries what is wet.
     pub(crate) fn wet(&mut self, t_s: f64) {
         let dried = Span::new(t_s, WETS_S);
         if let Some(patch) = self.patches.iter_mut().find(|patch| patch.drying.begin_s > t_s) {

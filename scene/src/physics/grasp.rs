@@ -25,11 +25,10 @@ pub struct Grasp {
     empty_kg: f64,
     fills: Vec<(Span, f64)>,
     pulls: Pulls,
-    /// Another hand has it, or has taken it.
     shared: bool,
-    taken: bool,
+    pub(crate) taken: bool,
     surface: Surface,
-    body: Body,
+    pub(crate) body: Body,
     pitch: Option<Pitch>,
     pad_m: f64,
     mat_n_per_m: f64,
@@ -43,22 +42,19 @@ pub struct Grasp {
     lifted: bool,
     slid_m: f64,
     speed_m_s: f64,
-    mass_kg: f64,
+    pub(crate) mass_kg: f64,
     table_n: f64,
-    needed_n: f64,
-    /// Its parts: along the pad, and against turning.
+    /// The least grip force of each finger that would hold the object at this instant, N.
+    pub(crate) needed_n: f64,
     needs_n: [f64; 2],
     shear_n: f64,
-    /// Shear over normal force that a slow pull still finds sticking, and that of what slides.
     holds: f64,
     slides: f64,
 }
 
-/// What slides is to stand still so soon, s: the motor's dead time, before which nothing can be known to have helped.
 const STOPS_S: f64 = 0.030;
 
 impl Grasp {
-    /// `object` is the scene's.
     pub(crate) fn new(scene: &SceneFile, object: &Object) -> Self {
         let empty_kg = object.mass_kg.get();
         let mat_n_per_m = scene.table.mat_n_per_mm.get() * 1e3;
@@ -67,7 +63,7 @@ impl Grasp {
         let fills = scene
             .fill
             .iter()
-            .map(|fill| (Span::new(fill.at_s.get_ref().get(), fill.for_s.get()), fill.add_kg.get_ref().get()))
+            .map(|fill| (Span::of(&fill.at_s, fill.for_s), fill.add_kg.get_ref().get()))
             .collect();
         Self {
             empty_kg,
@@ -103,17 +99,14 @@ impl Grasp {
         }
     }
 
-    /// Somebody pulls the object down for a second.
     pub(crate) fn pull(&mut self, at_s: f64, force_n: f64) {
         self.pulls.push(at_s, 1.0, -force_n, 0.1);
     }
 
-    /// The surface gets wet, or dry again.
     pub(crate) fn wet(&mut self, at_s: f64) {
         self.surface.wet(at_s);
     }
 
-    /// Goes on by one scan to `t_s`, pressed by each finger with `grip_n`.
     pub fn step(&mut self, t_s: f64, hand: &Hand, grip_n: f64) -> Touch {
         let poured_kg = self.fills.iter().map(|(span, kg)| kg * span.progress(t_s)).sum::<f64>();
         self.mass_kg = self.empty_kg + poured_kg;
@@ -121,7 +114,7 @@ impl Grasp {
         let grip_n = if self.in_hand { self.body.bears(grip_n) } else { 0.0 };
 
         let depth_m = -self.height_m(hand);
-        let sinking_m_s = -(self.speed_m_s + hand.speed_m_s());
+        let sinking_m_s = -(self.speed_m_s + hand.speed_m_s);
         self.table_n = if depth_m > 0.0 {
             (self.mat_n_per_m * depth_m + self.mat_ns_per_m * sinking_m_s).max(0.0)
         } else {
@@ -129,7 +122,7 @@ impl Grasp {
         };
         self.shared = self.pulls.takes(t_s);
         let free_n =
-            self.table_n + self.pulls.force_n(t_s) - self.mass_kg * (GRAVITY_M_S2 + hand.acceleration_m_s2());
+            self.table_n + self.pulls.force_n(t_s) - self.mass_kg * (GRAVITY_M_S2 + hand.acceleration_m_s2);
         let drag_ns_per_m = self.drag_ns_per_m(dry, grip_n);
         // Backward Euler: no drag turns the motion round.
         let free_m_s =
@@ -155,7 +148,7 @@ impl Grasp {
         self.shear_n = shear_n;
         self.lifted |= grip_n > TOUCH_N && self.table_n == 0.0;
         self.taken |= self.in_hand && self.shared && self.lifted && grip_n == 0.0;
-        self.in_hand &= self.slid_m.abs() <= self.pad_m && !self.body.is_broken() && !self.taken;
+        self.in_hand &= self.slid_m.abs() <= self.pad_m && !self.body.broken && !self.taken;
         // Pulled out of the fingers: they had it in their hand.
         self.taken |= !self.in_hand && self.shared && self.lifted;
         let drop_n = (friction.mu_s - friction.mu_d) * grip_n;
@@ -174,11 +167,10 @@ impl Grasp {
         }
     }
 
-    /// The table keeps what stands on it from turning.
     fn turn(&mut self, friction: Friction, grip_n: f64, drag_ns_per_m: f64, hand: &Hand) -> Turn {
         let Some(pitch) = self.pitch.as_mut().filter(|_| self.in_hand) else { return Turn::default() };
         let hangs = self.table_n == 0.0;
-        let weight_n = if hangs { self.mass_kg * (GRAVITY_M_S2 + hand.acceleration_m_s2()) } else { 0.0 };
+        let weight_n = if hangs { self.mass_kg * (GRAVITY_M_S2 + hand.acceleration_m_s2) } else { 0.0 };
         let slide_m_s = if self.sticks { 0.0 } else { self.speed_m_s };
         let load = Load {
             mass_kg: self.mass_kg,
@@ -191,13 +183,11 @@ impl Grasp {
         pitch.step(load, friction)
     }
 
-    /// How fast the pads rub over the object, by sliding and by turning, m/s.
     fn rubs_m_s(&self) -> f64 {
         let turns_m_s = self.pitch.as_ref().map_or(0.0, Pitch::turns_m_s);
         (self.speed_m_s * self.speed_m_s + turns_m_s * turns_m_s).sqrt()
     }
 
-    /// The part of sliding friction that grows with speed, as damping of what slides or turns, N s/m.
     fn drag_ns_per_m(&self, friction: Friction, grip_n: f64) -> f64 {
         if self.sticks && !self.turns() {
             return 0.0;
@@ -209,79 +199,50 @@ impl Grasp {
         self.pitch.as_ref().is_some_and(Pitch::turns)
     }
 
-    /// How the fingers feel it: its width, mm, and the stiffness of pad and object together, N/mm a finger. None once
-    /// it has left the pads: the fingers close on nothing.
+    /// Width, mm, and stiffness of pad and object together, N/mm a finger. None once the object has left the pads.
     pub fn between_the_fingers(&self) -> Option<(f64, f64)> {
-        self.in_hand.then(|| (self.body.width_mm(), self.body.stiffness_n_per_mm()))
+        self.in_hand.then(|| (self.body.width_mm(), self.body.stiffness_n_per_mm))
     }
 
-    /// Over where it stood, m.
     pub fn height_m(&self, hand: &Hand) -> f64 {
-        self.rest_m + hand.height_m() + self.slid_m
+        self.rest_m + hand.height_m + self.slid_m
     }
 
-    /// With what is in it, kg.
-    pub const fn mass_kg(&self) -> f64 {
-        self.mass_kg
-    }
-
-    /// The part of its weight that stands on the table.
     pub fn table_part(&self) -> f64 {
         self.table_n / (self.mass_kg * GRAVITY_M_S2)
     }
 
-    /// Whether nothing but the hand carries it.
     pub fn is_held(&self) -> bool {
         self.in_hand && self.lifted && self.table_n == 0.0
     }
 
-    /// Whether it was lifted and has then left the pads.
     pub const fn is_dropped(&self) -> bool {
         self.lifted && !self.in_hand && !self.taken
     }
 
-    /// Whether another hand has it too, so that what slides now is meant to.
     pub const fn is_shared(&self) -> bool {
         self.shared || self.taken
     }
 
-    pub const fn is_taken(&self) -> bool {
-        self.taken
-    }
-
-    /// How far it has turned about the pads, rad.
     pub fn pitch_rad(&self) -> f64 {
-        self.pitch.as_ref().map_or(0.0, Pitch::angle_rad)
+        self.pitch.as_ref().map_or(0.0, |pitch| pitch.angle_rad)
     }
 
-    /// What the grip did to it.
-    pub const fn body(&self) -> &Body {
-        &self.body
-    }
-
-    /// What stops it if it slides or turns: what sliding friction needs to carry it, and to take its speed within
-    /// [`STOPS_S`], N of each finger. None while it sticks.
+    /// Grip force of each finger that carries a sliding or turning object and stops it within [`STOPS_S`], N. None while it sticks.
     pub fn stops_n(&self) -> Option<f64> {
         let carries_n = self.needed_n * self.holds / self.slides;
         let brakes_n = self.mass_kg * self.rubs_m_s() / STOPS_S / PADS / self.slides;
         (!self.sticks || self.turns()).then_some(carries_n + brakes_n)
     }
 
-    /// The least grip force of each finger under which all that sticks now would stick, N: what is needed, and what the skin's spring
-    /// takes on top of it as it swings.
+    /// The least grip force of each finger under which all that sticks would stick, the swing of the skin's spring included, N.
     pub fn carries_n(&self) -> f64 {
         let [along_n, turning_n] = self.needs_n;
         along_n.max(self.shear_n.abs() / self.holds).hypot(turning_n)
     }
 
-    /// The shear that each finger could still carry before it slides, N; below 0 it slides.
     pub fn margin_n(&self, grip_n: f64) -> f64 {
         self.holds * (grip_n - self.needed_n)
-    }
-
-    /// The least grip force that would hold it at this instant, N.
-    pub const fn needed_n(&self) -> f64 {
-        self.needed_n
     }
 }
 
@@ -290,7 +251,6 @@ mod tests {
     use super::*;
     use crate::SceneFile;
 
-    /// A glass that is lifted from 1 s on and gripped with `grip_n` all along; its touch at the end of `for_s`.
     fn lifted(grip_n: f64, for_s: f64) -> (Grasp, Touch) {
         let (_, text) = crate::builtin()[0];
         let mut scene = SceneFile::parse(text, "glass").unwrap();

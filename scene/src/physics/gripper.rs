@@ -10,52 +10,40 @@ use crate::schedule::STEP_S;
 
 /// Fingers, motor and gear.
 ///
-/// The duty sets the finger speed, less what the load takes: `v = v_max (duty - F / F_max)`, so the fingers stall at
-/// `duty F_max`. The gear does not run backwards: a load never opens the hand, driven or not. What the bridge is told
-/// reaches the fingers one dead time later, starting and stopping alike (gear play, friction, the motor's inertia). A
-/// position-controlled gripper moves by whole steps, each as fast as it can. At the ends of its range and while its gear is jammed
-/// nothing moves, and the motor is blocked.
+/// The duty sets the finger speed, less what the load takes: `v = v_max (duty - F / F_max)`, so the fingers stall at `duty F_max`. A
+/// load never opens the hand. A drive reaches the fingers one dead time later. A position-controlled gripper moves by whole steps,
+/// each as fast as it can. At the ends of its range and while the gear is jammed the motor is blocked.
 #[derive(Clone, Debug)]
 pub struct Gripper {
-    speed_max_mm_s: f64,
-    force_max_n: f64,
-    range_mm: f64,
-    step_mm: f64,
+    parameters: sections::Gripper,
     pipeline: VecDeque<MotorDrive>,
     aim_mm: f64,
-    opening_mm: f64,
-    speed_mm_s: f64,
-    current: f64,
-    is_jammed: bool,
+    /// Distance between the pads when nothing is compressed, mm.
+    pub(crate) opening_mm: f64,
+    pub(crate) speed_mm_s: f64,
+    /// Current that the bridge shows over the stall current at the whole supply: the motor's, times the duty (DRV8874, section 7.3.3).
+    pub(crate) current_part: f64,
+    pub(crate) is_jammed: bool,
 }
 
 impl Gripper {
     pub(crate) fn new(parameters: &sections::Gripper) -> Self {
         let dead_steps = (parameters.dead_time_ms.get() / 1e3 / STEP_S).round() as usize;
         Self {
-            speed_max_mm_s: parameters.speed_mm_s.get(),
-            force_max_n: parameters.force_n.get(),
-            range_mm: parameters.range_mm.get(),
-            step_mm: parameters.step_mm.get(),
+            parameters: parameters.clone(),
             pipeline: vec![MotorDrive::Coast; dead_steps].into(),
             aim_mm: parameters.opening_mm.get_ref().get(),
             opening_mm: parameters.opening_mm.get_ref().get(),
             speed_mm_s: 0.0,
-            current: 0.0,
+            current_part: 0.0,
             is_jammed: false,
         }
     }
 
-    /// Whether something between the gear's teeth blocks it from now on.
-    pub const fn jam(&mut self, is_jammed: bool) {
-        self.is_jammed = is_jammed;
-    }
-
-    /// Goes on by one scan under `drive`, while each finger presses with `grip_n`.
     pub fn step(&mut self, drive: MotorDrive, grip_n: f64) {
         self.pipeline.push_back(drive);
-        let load = grip_n / self.force_max_n;
-        let (speed, current) = match self.pipeline.pop_front().unwrap_or(drive) {
+        let load = grip_n / self.parameters.force_n.get();
+        let (speed, current_part) = match self.pipeline.pop_front().unwrap_or(drive) {
             MotorDrive::Coast => (0.0, 0.0),
             MotorDrive::Close(duty) => {
                 let duty = f64::from(duty.as_per_mille()) / 1e3;
@@ -66,26 +54,27 @@ impl Gripper {
             // The load pushes the fingers the way they go; it takes nothing from their speed and adds nothing.
             MotorDrive::Open(duty) => {
                 let duty = f64::from(duty.as_per_mille()) / 1e3;
-                let is_blocked = self.is_jammed || self.aim_mm >= self.range_mm;
+                let is_blocked = self.is_jammed || self.aim_mm >= self.parameters.range_mm.get();
                 if is_blocked { (0.0, duty * duty) } else { (duty, 0.0) }
             }
         };
         let before_mm = self.opening_mm;
-        self.aim_mm = (self.aim_mm + speed * self.speed_max_mm_s * STEP_S).clamp(0.0, self.range_mm);
+        self.aim_mm = (self.aim_mm + speed * self.parameters.speed_mm_s.get() * STEP_S)
+            .clamp(0.0, self.parameters.range_mm.get());
         self.opening_mm = self.reach(load);
         self.speed_mm_s = (self.opening_mm - before_mm) / STEP_S;
-        self.current = current;
+        self.current_part = current_part;
     }
 
-    /// What the motor has to be told for the next frame so that each finger comes to press with `target_n` and no more, once
-    /// what it was told before has reached the fingers; None if it will press so hard anyway.
+    /// Drive for the next frame with which each finger comes to press with `target_n` and no more, once the drives before it have
+    /// reached the fingers. None if it will press so hard anyway.
     pub fn closing_to(
         &self,
         target_n: f64,
         grip_n: f64,
         (width_mm, stiffness_n_per_mm): (f64, f64),
     ) -> Option<MotorDrive> {
-        let load = grip_n / self.force_max_n;
+        let load = grip_n / self.parameters.force_n.get();
         let comes_mm: f64 = self
             .pipeline
             .iter()
@@ -95,12 +84,12 @@ impl Gripper {
                 MotorDrive::Open(duty) => -f64::from(duty.as_per_mille()) / 1e3,
             })
             .sum::<f64>()
-            * self.speed_max_mm_s
+            * self.parameters.speed_mm_s.get()
             * STEP_S;
         let aim_mm = self.aim_mm - comes_mm;
-        let opening_mm = if self.step_mm > 0.0 {
+        let opening_mm = if self.parameters.step_mm.get() > 0.0 {
             // The whole step that it stands on: it needs to aim half a step further for the next one.
-            (aim_mm / self.step_mm).round() * self.step_mm
+            (aim_mm / self.parameters.step_mm.get()).round() * self.parameters.step_mm.get()
         } else {
             aim_mm
         };
@@ -108,51 +97,35 @@ impl Gripper {
         if missing_mm <= 0.0 {
             return None;
         }
-        let frame_mm = self.speed_max_mm_s * STEP_S * SCANS_PER_FRAME as f64;
+        let frame_mm = self.parameters.speed_mm_s.get() * STEP_S * SCANS_PER_FRAME as f64;
         let permille = (1e3 * (load + missing_mm / frame_mm)).ceil().min(1e3);
         Some(MotorDrive::Close(Duty::per_mille(permille as u16)))
     }
 
-    /// Where the fingers are next: at the aim, or on the way to the whole step nearest to it, as fast as they can.
     fn reach(&self, load: f64) -> f64 {
-        if self.step_mm == 0.0 {
+        if self.parameters.step_mm.get() == 0.0 {
             return self.aim_mm;
         }
         if self.is_jammed {
             return self.opening_mm;
         }
-        let goal_mm = ((self.aim_mm / self.step_mm).round() * self.step_mm).clamp(0.0, self.range_mm);
-        let closing_mm = (1.0 - load).max(0.0) * self.speed_max_mm_s * STEP_S;
-        goal_mm.clamp(self.opening_mm - closing_mm, self.opening_mm + self.speed_max_mm_s * STEP_S)
-    }
-
-    /// Distance between the pads when nothing is compressed, mm.
-    pub const fn opening_mm(&self) -> f64 {
-        self.opening_mm
+        let goal_mm = ((self.aim_mm / self.parameters.step_mm.get()).round() * self.parameters.step_mm.get())
+            .clamp(0.0, self.parameters.range_mm.get());
+        let closing_mm = (1.0 - load).max(0.0) * self.parameters.speed_mm_s.get() * STEP_S;
+        goal_mm
+            .clamp(self.opening_mm - closing_mm, self.opening_mm + self.parameters.speed_mm_s.get() * STEP_S)
     }
 
     /// The opening as a part of the whole range.
     pub fn opening_part(&self) -> f64 {
-        self.opening_mm / self.range_mm
-    }
-
-    /// How fast the opening grows, mm/s.
-    pub const fn speed_mm_s(&self) -> f64 {
-        self.speed_mm_s
+        self.opening_mm / self.parameters.range_mm.get()
     }
 
     /// The speed as a part of the fastest, 0 to 1.
     pub fn speed_part(&self) -> f64 {
-        (self.speed_mm_s / self.speed_max_mm_s).abs()
+        (self.speed_mm_s / self.parameters.speed_mm_s.get()).abs()
     }
 
-    /// The current that the bridge shows, as a part of the stall current at the whole supply: the motor's, which makes torque, while
-    /// the bridge drives it, so duty times as much (DRV8874, section 7.3.3).
-    pub const fn current_part(&self) -> f64 {
-        self.current
-    }
-
-    /// Force of each finger on something `width_mm` wide, N: the pads and what they press on are one spring.
     pub fn grip_n(&self, width_mm: f64, stiffness_n_per_mm: f64) -> f64 {
         (stiffness_n_per_mm * (width_mm - self.opening_mm) / 2.0).max(0.0)
     }
@@ -176,13 +149,13 @@ mod tests {
     #[test]
     fn it_moves_one_dead_time_late_at_both_ends() {
         let mut gripper = Gripper::new(&sections::Gripper::default());
-        let open_mm = gripper.opening_mm();
+        let open_mm = gripper.opening_mm;
         run(&mut gripper, MotorDrive::Close(Duty::per_mille(500)), 0.030);
-        assert_eq!(gripper.opening_mm(), open_mm);
+        assert_eq!(gripper.opening_mm, open_mm);
         run(&mut gripper, MotorDrive::Coast, 0.030);
-        assert!((open_mm - gripper.opening_mm() - 0.030 * 60.0).abs() < 0.01);
+        assert!((open_mm - gripper.opening_mm - 0.030 * 60.0).abs() < 0.01);
         run(&mut gripper, MotorDrive::Coast, 0.1);
-        assert!((open_mm - gripper.opening_mm() - 0.030 * 60.0).abs() < 0.01);
+        assert!((open_mm - gripper.opening_mm - 0.030 * 60.0).abs() < 0.01);
     }
 
     #[test]
@@ -199,29 +172,13 @@ mod tests {
     }
 
     #[test]
-    fn it_comes_to_press_as_asked_and_no_harder() {
-        let mut gripper = Gripper::new(&sections::Gripper::default());
-        let mut drive = MotorDrive::Coast;
-        for scan in 0..8_000 {
-            let grip_n = gripper.grip_n(WIDTH_MM, STIFFNESS_N_PER_MM);
-            if scan % SCANS_PER_FRAME == 0 {
-                let asked = gripper.closing_to(12.0, grip_n, (WIDTH_MM, STIFFNESS_N_PER_MM));
-                drive = asked.unwrap_or(MotorDrive::Coast);
-            }
-            gripper.step(drive, grip_n);
-        }
-        let grip_n = gripper.grip_n(WIDTH_MM, STIFFNESS_N_PER_MM);
-        assert!((12.0..12.1).contains(&grip_n), "{grip_n} N");
-    }
-
-    #[test]
     fn a_blocked_motor_moves_nothing_and_draws_its_duty() {
         let blocked = |gripper: &mut Gripper, drive, part: f64| {
             run(gripper, drive, 0.1);
-            let opening_mm = gripper.opening_mm();
+            let opening_mm = gripper.opening_mm;
             run(gripper, drive, 0.1);
-            assert_eq!(gripper.opening_mm(), opening_mm, "{drive:?}");
-            assert!((gripper.current_part() - part).abs() < 1e-9, "{drive:?}");
+            assert_eq!(gripper.opening_mm, opening_mm, "{drive:?}");
+            assert!((gripper.current_part - part).abs() < 1e-9, "{drive:?}");
         };
         let half = Duty::per_mille(500);
         for step_mm in [0.0, 0.5] {
@@ -230,11 +187,11 @@ mod tests {
                 ..sections::Gripper::default()
             });
             run(&mut gripper, MotorDrive::Open(Duty::FULL), 0.05);
-            assert_eq!(gripper.current_part(), 0.0, "the control: it moves");
-            gripper.jam(true);
+            assert_eq!(gripper.current_part, 0.0, "the control: it moves");
+            gripper.is_jammed = true;
             blocked(&mut gripper, MotorDrive::Open(half), 0.25);
             blocked(&mut gripper, MotorDrive::Close(Duty::FULL), 1.0);
-            gripper.jam(false);
+            gripper.is_jammed = false;
             run(&mut gripper, MotorDrive::Open(Duty::FULL), 1.0);
             assert_eq!(gripper.opening_part(), 1.0);
             blocked(&mut gripper, MotorDrive::Open(half), 0.25);
@@ -248,9 +205,9 @@ mod tests {
         for _ in 0..40 {
             run(&mut gripper, MotorDrive::Close(Duty::per_mille(50)), 0.033);
             run(&mut gripper, MotorDrive::Coast, 0.1);
-            let steps = gripper.opening_mm() / 0.5;
-            assert!((steps - steps.round()).abs() < 1e-9, "{} mm", gripper.opening_mm());
+            let steps = gripper.opening_mm / 0.5;
+            assert!((steps - steps.round()).abs() < 1e-9, "{} mm", gripper.opening_mm);
         }
-        assert!(gripper.opening_mm() < 85.0);
+        assert!(gripper.opening_mm < 85.0);
     }
 }

@@ -1,10 +1,10 @@
-//! How the wearer's arm carries the hand: up, down, and swinging.
+//! The wearer's arm, which carries the hand up, down, and swinging.
 
 use crate::file::sections::{Move, Swing};
 use crate::pole::LowPass;
 use crate::schedule::{STEP_S, Span};
 
-/// How fast a person notices that the table begins to carry, s (assumed).
+/// Time constant with which a person notices that the table carries, s (assumed).
 const FEEL_S: f64 = 0.030;
 
 /// The hand's height over where it grasps, and how it moves. The arm is strong: what the hand holds does not move it.
@@ -14,9 +14,10 @@ pub struct Hand {
     swings: Vec<(Span, Swing)>,
     felt: LowPass,
     aim_m: f64,
-    height_m: f64,
-    speed_m_s: f64,
-    acceleration_m_s2: f64,
+    /// Over where it grasps; speed and acceleration are upwards.
+    pub(crate) height_m: f64,
+    pub(crate) speed_m_s: f64,
+    pub(crate) acceleration_m_s2: f64,
 }
 
 impl Hand {
@@ -25,7 +26,7 @@ impl Hand {
         let moves = moves.iter().map(|step| {
             let by_m = step.to_mm.get() / 1e3 - from_m;
             from_m += by_m;
-            (Span::new(step.at_s.get_ref().get(), step.for_s.get()), by_m)
+            (Span::of(&step.at_s, step.for_s), by_m)
         });
         let moves = moves.collect();
         let swings = swings.iter().map(|swing| {
@@ -43,7 +44,6 @@ impl Hand {
         }
     }
 
-    /// The arm moves to `to_m` over where the hand grasped.
     pub(crate) fn reach(&mut self, at_s: f64, for_s: f64, to_m: f64) {
         let from_m: f64 = self.moves.iter().map(|(_, by_m)| by_m).sum();
         self.moves.push((Span::new(at_s, for_s), to_m - from_m));
@@ -65,29 +65,13 @@ impl Hand {
         self.speed_m_s = speed_m_s;
         self.height_m += speed_m_s * STEP_S;
     }
-
-    /// Over where it grasps, m.
-    pub const fn height_m(&self) -> f64 {
-        self.height_m
-    }
-
-    /// Upwards, m/s.
-    pub const fn speed_m_s(&self) -> f64 {
-        self.speed_m_s
-    }
-
-    /// Upwards, m/s^2.
-    pub const fn acceleration_m_s2(&self) -> f64 {
-        self.acceleration_m_s2
-    }
 }
 
-/// How a person reaches: 10 p^3 - 15 p^4 + 6 p^5 (Flash and Hogan 1985).
+/// Minimum jerk, as a person reaches: 10 p^3 - 15 p^4 + 6 p^5 (Flash and Hogan 1985).
 fn minimum_jerk(p: f64) -> f64 {
     p * p * p * (10.0 + p * (6.0 * p - 15.0))
 }
 
-/// A whole number of cycles under a Hann window: the arm ends where it began.
 fn swing_m_s(span: &Span, swing: &Swing, t_s: f64) -> f64 {
     if !span.contains(t_s) {
         return 0.0;

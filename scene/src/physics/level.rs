@@ -1,4 +1,4 @@
-//! How much of a contact a scene needs: rigid (L0), a patch (L1), or friction that falls with speed (L2).
+//! Levels of contact: rigid (L0), a patch (L1), or friction that falls with speed (L2).
 
 use super::brush::{Pad, closed_form};
 use super::contact::RigidCoulomb;
@@ -12,44 +12,30 @@ use crate::file::{SceneFile, sections};
 pub enum Level {
     /// L0: all of it sticks or all of it slides.
     Rigid(RigidCoulomb),
-    /// L1: it begins to slide at its edge.
     Patch(Patch),
-    /// L2: it slides the more easily the faster it slides.
     Stribeck(Falling),
 }
 
-/// What is pressed and pushed in one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Push {
-    /// What each pad presses with, N; less than nothing is nothing.
     pub normal_n: f64,
-    /// Pads that press alike and share the friction.
     pub pads: f64,
     pub friction: Friction,
-    /// What they hold, kg.
     pub mass_kg: f64,
-    /// The speed that it would have after the step without friction, m/s.
     pub free_m_s: f64,
 }
 
-/// What a step of any level did.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Outcome {
-    /// Speed of the mass after the step, m/s.
     pub speed_m_s: f64,
-    /// Mean friction of all pads during the step, N, on the mass.
     pub force_n: f64,
     pub sticks: bool,
-    /// The part of the area that sticks.
     pub stuck_part: f64,
-    /// Elements of one pad that let go.
     pub let_go: usize,
-    /// The shear that one pad let go of, N.
     pub released_n: f64,
 }
 
 impl Level {
-    /// At rest, as a scene has it.
     pub fn of(scene: &SceneFile) -> Self {
         Self::new(&scene.contact)
     }
@@ -70,7 +56,6 @@ impl Level {
         }
     }
 
-    /// The greatest shear over normal force at which a slow pull still finds it sticking.
     pub fn holds(&self, friction: Friction) -> f64 {
         match self {
             Self::Rigid(_) | Self::Stribeck(..) => friction.mu_s,
@@ -87,7 +72,6 @@ impl Level {
         }
     }
 
-    /// Energy that the pads could give back, J.
     pub fn energy_j(&self, pads: f64) -> f64 {
         match self {
             Self::Patch(patch) => pads * patch.energy_j(),
@@ -100,9 +84,7 @@ impl Level {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Falling {
     contact: RigidCoulomb,
-    /// Stribeck's speed, m/s.
     speed_m_s: f64,
-    /// Speed after the last step, m/s.
     before_m_s: f64,
 }
 
@@ -113,7 +95,6 @@ const INNER_STEP_PART: f64 = 0.02;
 const INNER_STEPS_MAX: f64 = 1_000.0;
 
 impl Falling {
-    /// As many inner steps as the fall of friction needs; what accelerates the mass is even over all of them.
     fn step(&mut self, push: Push, dt_s: f64) -> Outcome {
         let Friction { mu_s, mu_d } = push.friction;
         let curve = Stribeck { mu_s, mu_d, speed_m_s: self.speed_m_s };
@@ -137,7 +118,6 @@ impl Falling {
     }
 }
 
-/// L0's step, in the words of every level.
 fn rigid(contact: &mut RigidCoulomb, push: Push, dt_s: f64) -> Outcome {
     let Push { normal_n, pads, friction, mass_kg, free_m_s } = push;
     let outcome = contact.step(pads * normal_n, friction, mass_kg, free_m_s, dt_s);

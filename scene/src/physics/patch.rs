@@ -15,7 +15,6 @@ pub struct Patch {
 }
 
 impl Patch {
-    /// At rest, loose.
     pub fn new(pad: Pad, relaxation_s: f64) -> Self {
         Self {
             brush: BrushPatch::new(pad, ELEMENTS),
@@ -37,7 +36,7 @@ impl Patch {
     /// when the mass turns round, all of it sticks again and is a spring too.
     pub(super) fn step(&mut self, push: Push, dt_s: f64) -> Outcome {
         let Push { normal_n, pads, friction, mass_kg, free_m_s } = push;
-        // What the pad carried under the load of the last step, as far as it can under this one's.
+        // The pad's last shear, limited by this step's load.
         let limit_n = friction.mu_s * normal_n;
         let pull_n = pads * self.shear_n.clamp(-limit_n, limit_n);
         let momentum_ns = mass_kg * free_m_s - pull_n * dt_s;

@@ -33,13 +33,11 @@ impl Pulls {
         self.0.push(Pull { comes, goes, force_n, takes: false });
     }
 
-    /// On the object at `t_s`, N, upwards.
     pub(crate) fn force_n(&self, t_s: f64) -> f64 {
         let part = |pull: &Pull| smooth(pull.comes.progress(t_s)) - smooth(pull.goes.progress(t_s));
         self.0.iter().map(|pull| pull.force_n * part(pull)).sum()
     }
 
-    /// Whether somebody has the object in their hand at `t_s` and would keep it.
     pub(crate) fn takes(&self, t_s: f64) -> bool {
         self.0.iter().any(|pull| pull.takes && (pull.comes.begin_s..pull.goes.begin_s).contains(&t_s))
     }

@@ -1,24 +1,20 @@
 //! L2: friction that falls with speed, under a mass on a spring.
 //!
-//! A mass held by a spring on a moving surface vibrates by itself exactly when `c + P dmu/dv < 0` at the sliding speed
-//! (`scene/tests/stribeck.rs`). That vibration is the continuous signal of the photoelastic sensor (Dubey 2006, section 3, "a
-//! negative damping to sustain the vibration"); with L0 and L1, whose sliding friction is constant, it dies away.
+//! The mass vibrates by itself exactly when `c + P dmu/dv < 0` at the sliding speed. That vibration is the continuous signal of the
+//! photoelastic sensor (Dubey 2006, section 3).
 
 use super::GRAVITY_M_S2;
 
 /// mu(v) = mu_d + (mu_s - mu_d) exp(-v / v_s).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stribeck {
-    /// At rest.
     pub mu_s: f64,
     /// At high speed. At most `mu_s`.
     pub mu_d: f64,
-    /// v_s, the speed at which 1/e of the difference is left, m/s. Above 0.
     pub speed_m_s: f64,
 }
 
 impl Stribeck {
-    /// The coefficient at a sliding speed of either direction.
     pub fn mu(&self, slide_m_s: f64) -> f64 {
         self.mu_d + (self.mu_s - self.mu_d) * libm::exp(-slide_m_s.abs() / self.speed_m_s)
     }
@@ -29,16 +25,11 @@ impl Stribeck {
     }
 }
 
-/// What the slider is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slider {
-    /// The mass that rubs, kg.
     pub mass_kg: f64,
-    /// Of its spring, N/m.
     pub stiffness_n_per_m: f64,
-    /// Of its damper, N s/m.
     pub damping_ns_per_m: f64,
-    /// Between mass and surface.
     pub friction: Stribeck,
 }
 
@@ -48,12 +39,11 @@ pub struct Slider {
 pub struct SmallSignal {
     /// Amplitudes go as exp(growth t), 1/s. Above 0 it vibrates by itself.
     pub growth_per_s: f64,
-    /// Angular frequency, rad/s; 0 where it creeps back or runs away without swinging.
     pub omega_rad_s: f64,
 }
 
 impl Slider {
-    /// What the linearised equation says about sliding at `surface_m_s` under `normal_n`.
+    /// Growth and frequency of the linearised equation at `surface_m_s` under `normal_n`.
     pub fn small_signal(&self, normal_n: f64, surface_m_s: f64) -> SmallSignal {
         let net_ns_per_m = self.damping_ns_per_m + normal_n * self.friction.slope_s_m(surface_m_s);
         let growth_per_s = -net_ns_per_m / (2.0 * self.mass_kg);
@@ -76,7 +66,6 @@ impl Slider {
 /// it does between two scans is no longer resolved. It stays stable.
 const INNER_STEPS_MAX: f64 = 1_000.0;
 
-/// A slider in motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StribeckSlider {
     slider: Slider,
@@ -85,12 +74,10 @@ pub struct StribeckSlider {
 }
 
 impl StribeckSlider {
-    /// At rest, its spring loose.
     pub const fn new(slider: Slider) -> Self {
         Self { slider, position_m: 0.0, speed_m_s: 0.0 }
     }
 
-    /// Deflected by `position_m`, moving at `speed_m_s`.
     pub const fn with_motion(mut self, position_m: f64, speed_m_s: f64) -> Self {
         self.position_m = position_m;
         self.speed_m_s = speed_m_s;
@@ -123,7 +110,6 @@ impl StribeckSlider {
         self.position_m += self.speed_m_s * dt_s;
     }
 
-    /// Deflection of its spring, m: what the photoelastic layer sees.
     pub const fn position_m(&self) -> f64 {
         self.position_m
     }
@@ -144,5 +130,4 @@ pub const METAL: Stribeck = Stribeck { mu_s: 0.35, mu_d: 0.30, speed_m_s: 0.003 
 /// Plastic on the metal strip. Assumed: friction falls less than on metal ("higher in metal-metal contacts", section 6).
 pub const PLASTIC: Stribeck = Stribeck { mu_s: 0.30, mu_d: 0.27, speed_m_s: 0.003 };
 
-/// The weight of Dubey's aluminium block (105 g), N: the order of the normal force in its experiments.
 pub const BLOCK_N: f64 = 0.105 * GRAVITY_M_S2;

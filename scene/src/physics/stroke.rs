@@ -22,7 +22,7 @@ pub struct Stroke {
     surface: Surface,
     contact: Level,
     carriage_m: f64,
-    probe_m: f64,
+    pub(crate) probe_m: f64,
     speed_m_s: f64,
 }
 
@@ -34,15 +34,13 @@ impl Stroke {
             presses: scene
                 .press
                 .iter()
-                .map(|press| (Span::new(press.at_s.get_ref().get(), press.for_s.get()), press.load_n.get()))
+                .map(|press| (Span::of(&press.at_s, press.for_s), press.load_n.get()))
                 .collect(),
             ramp_s: robot.ramp_ms.get() / 1e3,
             sweeps: scene
                 .sweep
                 .iter()
-                .map(|sweep| {
-                    (Span::new(sweep.at_s.get_ref().get(), sweep.for_s.get()), sweep.speed_mm_s.get() / 1e3)
-                })
+                .map(|sweep| (Span::of(&sweep.at_s, sweep.for_s), sweep.speed_mm_s.get() / 1e3))
                 .collect(),
             mass_kg,
             stiffness_n_per_m,
@@ -55,7 +53,6 @@ impl Stroke {
         }
     }
 
-    /// Goes on by one scan to `t_s`.
     pub fn step(&mut self, t_s: f64) -> Touch {
         let load_n = self.over_time(&self.presses, t_s);
         let friction = self.surface.at(t_s);
@@ -73,21 +70,15 @@ impl Stroke {
             normal_n: load_n,
             shear_n: -outcome.force_n,
             slide_m_s: self.speed_m_s,
-            turn_m_s: 0.0,
-            torque_nm: 0.0,
             sticks: outcome.sticks,
             stuck_part: outcome.stuck_part,
             let_go: outcome.let_go,
             released_n: if load_n > TOUCH_N { outcome.released_n } else { 0.0 },
             drop_n,
+            ..Touch::default()
         }
     }
 
-    pub const fn probe_m(&self) -> f64 {
-        self.probe_m
-    }
-
-    /// What a list of spans and heights adds up to at `t_s`, each coming and going without a jerk.
     fn over_time(&self, list: &[(Span, f64)], t_s: f64) -> f64 {
         let part = |span: &Span| {
             let up = ((t_s - span.begin_s) / self.ramp_s).clamp(0.0, 1.0);

@@ -10,10 +10,7 @@ use crate::schedule::STEP_S;
 /// The mass turns as fast as the duty says, one time constant later, and pulls outward with the square of its speed.
 #[derive(Clone, Debug)]
 pub(crate) struct Vibrator {
-    film_mv: f64,
-    full_hz: f64,
-    spin_s: f64,
-    /// Parts of the whole.
+    parameters: sections::Vibrator,
     duty: f64,
     speed: f64,
     phase: f64,
@@ -21,25 +18,19 @@ pub(crate) struct Vibrator {
 
 impl Vibrator {
     pub(crate) fn new(parameters: &sections::Vibrator) -> Self {
-        Self {
-            film_mv: parameters.film_mv.get(),
-            full_hz: parameters.full_hz.get(),
-            spin_s: parameters.spin_ms.get() / 1e3,
-            duty: 0.0,
-            speed: 0.0,
-            phase: 0.0,
-        }
+        Self { parameters: parameters.clone(), duty: 0.0, speed: 0.0, phase: 0.0 }
     }
 
     pub(crate) fn drive(&mut self, duty: Duty) {
         self.duty = f64::from(duty.as_per_mille()) / 1e3;
     }
 
-    /// What a film of mean gain hears after one scan more, mV.
     pub(crate) fn step(&mut self) -> f64 {
-        self.speed += (self.duty - self.speed) * (1.0 - libm::exp(-STEP_S / self.spin_s));
-        self.phase = (self.phase + self.full_hz * self.speed * STEP_S).fract();
-        self.film_mv * self.speed * self.speed * libm::sin(TAU * self.phase)
+        let p = &self.parameters;
+        let spin_s = p.spin_ms.get() / 1e3;
+        self.speed += (self.duty - self.speed) * (1.0 - libm::exp(-STEP_S / spin_s));
+        self.phase = (self.phase + p.full_hz.get() * self.speed * STEP_S).fract();
+        p.film_mv.get() * self.speed * self.speed * libm::sin(TAU * self.phase)
     }
 }
 

@@ -24,21 +24,18 @@ struct Contraction {
     until_grip_n: f64,
 }
 
-/// What they do at an instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Effort {
-    /// What they want; None is rest.
+    /// None is rest.
     pub intent: Option<Intent>,
-    /// Contraction of the flexor, mV of envelope above rest once it has risen.
     pub flexor_mv: f64,
-    /// Contraction of the extensor, likewise.
     pub extensor_mv: f64,
 }
 
 impl Wearer {
     pub(crate) fn new(muscles: &[Muscle]) -> Self {
         let contractions = muscles.iter().map(|muscle| Contraction {
-            span: Span::new(muscle.at_s.get_ref().get(), muscle.for_s.get()),
+            span: Span::of(&muscle.at_s, muscle.for_s),
             intent: muscle.intent,
             level_mv: muscle.level_mv.get(),
             until_grip_n: muscle.until_grip_n.map_or(f64::INFINITY, |newtons| newtons.get()),
@@ -47,7 +44,7 @@ impl Wearer {
     }
 
     pub(crate) fn contract(&mut self, at_s: f64, for_s: f64, intent: Intent, until_grip_n: f64) {
-        // What opens and closes a hand that is not calibrated, too.
+        // Enough for a hand that is not calibrated.
         let level_mv = if intent == Intent::Close { 900.0 } else { 2_000.0 };
         let span = Span::new(at_s, for_s);
         self.contractions.push(Contraction { span, intent, level_mv, until_grip_n });
@@ -58,7 +55,6 @@ impl Wearer {
         (!self.contractions.is_empty()).then_some(WEARER)
     }
 
-    /// Goes on to `t_s`, while each finger presses with `grip_n`.
     pub fn step(&mut self, t_s: f64, grip_n: f64) -> Effort {
         let Some(now) = self.contractions.iter_mut().find(|contraction| contraction.span.contains(t_s))
         else {

@@ -1,20 +1,16 @@
 //! A fisheye lens: equidistant, r = f theta.
 
-/// How far from the middle of the picture, in both worlds, px.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lens {
-    /// Focal length, px. Infinite: no distortion.
     pub focal_px: f64,
     pub middle: (f64, f64),
 }
 
 impl Lens {
-    /// Where a place of the flat world is seen.
     pub fn seen(&self, (x, y): (f64, f64)) -> (f64, f64) {
         self.scaled((x, y), |r| self.focal_px * libm::atan(r / self.focal_px))
     }
 
-    /// What place of the flat world is seen there.
     pub fn flat(&self, (x, y): (f64, f64)) -> (f64, f64) {
         // Nothing is seen beyond 80 degrees.
         self.scaled((x, y), |r| self.focal_px * libm::tan((r / self.focal_px).min(1.4)))

@@ -1,25 +1,18 @@
-//! What happens in front of the camera: an object comes, is grasped, held, slips, is pulled and turned, and goes.
+//! The story in front of the camera: an object comes, is grasped, held, slips, is pulled and turned, and goes.
 
 use crate::random::Noise;
 
-/// How everything is at one instant. Places in the flat world, px.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct State {
-    /// The object's middle; it is far outside while there is none.
     pub object: (f64, f64),
     /// The object's angle, radians from x towards y (down).
     pub angle_rad: f64,
-    /// How far the skin in contact is sheared, px.
     pub shear_px: (f64, f64),
-    /// How far the skin is pressed apart at the rim of the contact, px.
     pub press_px: f64,
-    /// How far the background has moved.
     pub background: (f64, f64),
-    /// Light, of the usual.
     pub exposure: f64,
 }
 
-/// What a session draws for its story.
 #[derive(Clone, Debug)]
 pub struct Story {
     from: (f64, f64),
@@ -33,18 +26,14 @@ pub struct Story {
     exposure: (f64, f64),
 }
 
-/// When the object begins to come, is grasped, let go, and is gone, s.
 pub const COMES_S: f64 = 1.0;
 pub const GRASPED_S: f64 = 2.0;
 pub const LET_GO_S: f64 = 8.0;
 pub const GONE_S: f64 = 9.0;
 pub const END_S: f64 = 10.0;
-/// When it slides, s: begin and end of both slides.
 pub const SLIDES_S: [(f64, f64); 2] = [(3.0, 3.4), (5.0, 5.5)];
 pub const TURN_S: (f64, f64) = (6.6, 7.2);
-/// When it is pulled at without sliding, s.
 const SHEARS_S: [f64; 3] = [2.4, 4.1, 6.0];
-/// When the hand moves, s: the background does.
 pub const HAND_S: [(f64, f64); 3] = [(0.5, 0.9), (4.0, 4.8), (7.3, 7.9)];
 
 /// From 0 to 1 between two instants, without a jerk.
@@ -54,7 +43,6 @@ fn smooth(t_s: f64, from_s: f64, to_s: f64) -> f64 {
 }
 
 impl Story {
-    /// With `speed` slides and turn go so many times as far in their time.
     pub(crate) fn drawn(noise: &mut Noise, speed: f64) -> Self {
         let side = noise.sign();
         let mut shear = || (noise.between(-3.0, 3.0), noise.between(-3.0, 3.0));
@@ -107,7 +95,6 @@ impl Story {
         }
     }
 
-    /// Whether the object moves against the finger.
     pub fn slides(t_s: f64) -> bool {
         SLIDES_S.iter().chain([&TURN_S]).any(|&(from_s, to_s)| (from_s..to_s).contains(&t_s))
     }

@@ -5,14 +5,12 @@ use crate::random::Noise;
 /// Side of a texture, px: it repeats.
 const SIDE: usize = 512;
 
-/// A coloured surface that repeats every 512 px.
 #[derive(Clone, Debug)]
 pub struct Texture {
     pixels: Vec<[f32; 3]>,
 }
 
 impl Texture {
-    /// Draws one: `contrast` is how far its patches differ, in grey levels; `marks` of them are sharp.
     pub(crate) fn drawn(noise: &mut Noise, base: [f64; 3], contrast: f64, marks: usize) -> Self {
         let mut waves = Vec::new();
         for _ in 0..9 {
@@ -48,7 +46,6 @@ impl Texture {
         Self { pixels }
     }
 
-    /// The colour between four pixels.
     pub fn at(&self, x: f64, y: f64) -> [f32; 3] {
         let (left, top) = (x.floor(), y.floor());
         let (right, down) = ((x - left) as f32, (y - top) as f32);

@@ -8,26 +8,14 @@ use tenax_hal_shim::words::Code;
 use crate::file::sections::Camera;
 use crate::random::{Noise, Source};
 
-/// What it says of two images.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Seen {
-    /// When the second image was taken, s.
     pub t_s: f64,
-    /// When the words have come over the line, s.
     pub arrives_s: f64,
-    /// v1: -1 the object moves relative to the hand, 1 they move as one, 0 neither moves.
+    /// -1: the object moves against the hand, 1: they move as one, 0: neither moves.
     pub v1: i8,
-    /// v2: 1 the hand moves upward, -1 downward, 0 not.
+    /// 1: the hand moves up, -1: down, 0: not.
     pub v2: i8,
-}
-
-impl Post {
-    fn deliver(&mut self, t_s: f64) {
-        while self.under_way.front().is_some_and(|seen| seen.arrives_s <= t_s) {
-            self.arrived = self.under_way.pop_front();
-            self.unsent = self.arrived;
-        }
-    }
 }
 
 /// Marks on whole pixels, two images.
@@ -36,22 +24,12 @@ impl Post {
 /// Tada 2006, figure 6 (a) and (b), and a slip is seen two images late.
 #[derive(Debug)]
 pub(crate) struct Eye {
-    pixel_mm: f64,
-    rate_hz: f64,
-    jitter_px: f64,
-    /// Where the marks lie on the grid of pixels, as parts of a pixel.
+    parameters: Camera,
+    /// Places of the marks on the grid of pixels, parts of a pixel.
     phases: [f64; 2],
     noise: Noise,
     images: u64,
     last_px: Option<[i64; 2]>,
-    post: Post,
-}
-
-/// The way of the words from the camera to the board.
-#[derive(Debug)]
-struct Post {
-    delay_s: f64,
-    teaches: bool,
     under_way: VecDeque<Seen>,
     arrived: Option<Seen>,
     unsent: Option<Seen>,
@@ -61,51 +39,49 @@ impl Eye {
     pub(crate) fn new(parameters: &Camera, seed: u64) -> Self {
         let mut noise = Noise::new(seed, Source::Camera);
         Self {
-            pixel_mm: parameters.pixel_mm.get(),
-            rate_hz: parameters.rate_hz.get(),
-            jitter_px: parameters.jitter_px.get(),
+            parameters: parameters.clone(),
             phases: [noise.between(0.0, 1.0), noise.between(0.0, 1.0)],
             noise,
             images: 0,
             last_px: None,
-            post: Post {
-                delay_s: parameters.delay_ms.get() / 1e3,
-                teaches: parameters.teaches,
-                under_way: VecDeque::new(),
-                arrived: None,
-                unsent: None,
-            },
+            under_way: VecDeque::new(),
+            arrived: None,
+            unsent: None,
         }
     }
 
-    /// Goes on to `t_s`; says something whenever an image is due and there is one before it.
+    /// Words about the hand and the object whenever an image is due and there is one before it.
     pub(crate) fn step(&mut self, t_s: f64, hand_mm: f64, object_mm: f64) -> Option<Seen> {
-        self.post.deliver(t_s);
-        if t_s * self.rate_hz < self.images as f64 {
+        while self.under_way.front().is_some_and(|seen| seen.arrives_s <= t_s) {
+            self.arrived = self.under_way.pop_front();
+            self.unsent = self.arrived;
+        }
+        let p = &self.parameters;
+        if t_s * p.rate_hz.get() < self.images as f64 {
             return None;
         }
         self.images += 1;
         let places = [hand_mm, object_mm - hand_mm];
         let px: [i64; 2] = std::array::from_fn(|n| {
-            let jitter = self.jitter_px * self.noise.normal();
-            (places[n] / self.pixel_mm + self.phases[n] + jitter).floor() as i64
+            let jitter = p.jitter_px.get() * self.noise.normal();
+            (places[n] / p.pixel_mm.get() + self.phases[n] + jitter).floor() as i64
         });
         let last = self.last_px.replace(px)?;
         let hand = px[0].cmp(&last[0]) as i8;
         let relative = px[1] != last[1];
-        let arrives_s = t_s + self.post.delay_s;
+        let arrives_s = t_s + p.delay_ms.get() / 1e3;
         let seen = Seen { t_s, arrives_s, v1: if relative { -1 } else { hand.abs() }, v2: hand };
-        self.post.under_way.push_back(seen);
+        self.under_way.push_back(seen);
         Some(seen)
     }
 
     pub(crate) const fn said(&self) -> Option<Seen> {
-        self.post.arrived
+        self.arrived
     }
 
-    /// The words that arrived just now, as they come down the serial line, if this camera teaches.
+    /// The words that arrived just now, if this camera teaches.
     pub(crate) fn teach(&mut self, t_s: f64) -> Option<Down> {
-        let seen = self.post.unsent.take().filter(|_| self.post.teaches)?;
+        let seen = self.unsent.take().filter(|_| self.parameters.teaches)?;
         let age_ms = ((t_s - seen.t_s) * 1e3).round() as u16;
         Some(Down::Teach { codes: [seen.v1, seen.v2].map(|v| Code::from_sign(v.into())), age_ms })
     }
@@ -115,7 +91,6 @@ impl Eye {
 mod tests {
     use super::*;
 
-    /// The words of one second in which the hand moves at `hand_mm_s` and the object at `object_mm_s`.
     fn words(hand_mm_s: f64, object_mm_s: f64) -> Vec<Seen> {
         let mut eye =
             Eye::new(&Camera { jitter_px: crate::file::quantity::Part::of(0.0), ..Camera::default() }, 1);
@@ -128,21 +103,15 @@ mod tests {
     }
 
     #[test]
-    fn thirty_images_a_second_make_twenty_nine_words() {
-        assert_eq!(words(0.0, 0.0).len(), 29);
-        assert!(words(0.0, 0.0).iter().all(|seen| (seen.v1, seen.v2) == (0, 0)));
-    }
-
-    #[test]
-    fn as_one_is_1_and_apart_is_minus_1() {
+    fn still_as_one_apart_and_slow_are_told_by_29_words_a_second() {
         // 50 mm/s is more than a pixel an image.
-        assert!(words(50.0, 50.0).iter().all(|seen| (seen.v1, seen.v2) == (1, 1)));
-        assert!(words(-50.0, -50.0).iter().all(|seen| (seen.v1, seen.v2) == (1, -1)));
-        assert!(words(50.0, 0.0).iter().all(|seen| (seen.v1, seen.v2) == (-1, 1)));
-    }
-
-    #[test]
-    fn slow_motion_chatters() {
+        for (hand_mm_s, object_mm_s, said) in
+            [(0.0, 0.0, (0, 0)), (50.0, 50.0, (1, 1)), (-50.0, -50.0, (1, -1)), (50.0, 0.0, (-1, 1))]
+        {
+            let words = words(hand_mm_s, object_mm_s);
+            assert_eq!(words.len(), 29);
+            assert!(words.iter().all(|seen| (seen.v1, seen.v2) == said), "{said:?}");
+        }
         // Tada's 25 mm/s are 0.63 of a pixel an image: some 18 of 29 images see it, and no two in a row do without.
         let words = words(25.0, 25.0);
         let seen = words.iter().filter(|seen| seen.v2 == 1).count();

@@ -8,12 +8,9 @@ use tenax_hal_shim::front_end::PVDF_CUT_MV;
 use crate::file::sections::{FaultKind, SensorFault};
 use crate::schedule::Span;
 
-/// How fast a cut wire's input loses its charge, s: 100 kohm and 4.7 kohm, 1 uF.
 const CUT_S: f64 = 0.105;
-/// How fast the amplifier of a film whose wire is cut comes to rest, s: 82 Mohm and 120 pF.
 const FILM_CUT_S: f64 = 0.010;
 
-/// The channel whose input a switch shows before this one's.
 fn shown_before(channel: usize) -> Option<usize> {
     let before = |select: u8| (select + SWITCH_INPUTS - 1) % SWITCH_INPUTS;
     let input = match CHANNELS[channel].input {
@@ -56,7 +53,6 @@ impl Faults {
         Self(faults.collect())
     }
 
-    /// What presses on the quadrants of the force sensor besides the object, or seems to, N.
     pub(crate) fn pressed_n(&self, t_s: f64) -> [f64; FSR_COUNT] {
         let mut pressed_n = [0.0; FSR_COUNT];
         for fault in self.0.iter().filter(|fault| fault.span.contains(t_s)) {
@@ -71,7 +67,6 @@ impl Faults {
         pressed_n
     }
 
-    /// Puts on the films' pins what their amplifiers give whose wires are cut. Before the converter's noise, which exceeds the amplifier's.
     pub(crate) fn cut_films(&mut self, t_s: f64, pins_v: &mut [f64; COUNT]) {
         for fault in self.0.iter_mut().filter(|fault| fault.is_cut_film() && fault.span.contains(t_s)) {
             let pin_v = &mut pins_v[fault.channel];
@@ -81,7 +76,6 @@ impl Faults {
         }
     }
 
-    /// Puts on the pins what broken sensors put there. After the noise: a dead or stuck pin has none.
     pub(crate) fn apply(&mut self, t_s: f64, pins_v: &mut [f64; COUNT]) {
         for fault in self.0.iter_mut().filter(|fault| fault.span.contains(t_s)) {
             match fault.kind {

@@ -18,7 +18,6 @@ pub(crate) struct Quadrants {
 
 #[derive(Clone, Copy, Debug)]
 struct Quadrant {
-    /// Hysteresis is play: the reading follows the force at a distance.
     followed_n: f64,
     crept: LowPass,
 }
@@ -33,7 +32,6 @@ impl Quadrants {
         }
     }
 
-    /// Voltages at the pins after one frame. `pressed_n` is what a fault presses on each quadrant besides.
     pub(crate) fn step(&mut self, touch: &Touch, pressed_n: [f64; FSR_COUNT]) -> [f64; FSR_COUNT] {
         let loads_n = fsr_quadrants_n(touch.normal_n, touch.shear_n, 0.0);
         let mut pins = [0.0; FSR_COUNT];

@@ -1,4 +1,4 @@
-//! What the sensors make of the world, in volts at the pins.
+//! Sensors: from the world to volts at the pins.
 
 pub(crate) mod array;
 pub mod camera;
@@ -13,10 +13,8 @@ pub(crate) mod pvdf;
 pub(crate) mod skin;
 pub(crate) mod strain;
 
-/// Supply of the analogue front ends less what their outputs cannot reach, V.
 const CLIP_V: std::ops::RangeInclusive<f64> = 0.05..=3.2;
 
-/// What a working front end can put on its pin, V: it clips just inside its supply.
 pub(crate) fn front_end_v(mv: f64) -> f64 {
     (mv / 1e3).clamp(*CLIP_V.start(), *CLIP_V.end())
 }

@@ -12,7 +12,6 @@ use crate::pole::LowPass;
 use crate::random::{Noise, Source};
 use crate::schedule::Span;
 
-/// Of the two sensors.
 pub(crate) const SIDES: usize = 2;
 /// A one-pole takes 2.2 time constants from 10 to 90 %.
 const RISE_TAUS: f64 = 2.197;
@@ -21,7 +20,6 @@ const WANDER_HZ: f64 = 6.0;
 /// The part of a lifted electrode's mains that is ripple; the rest is level.
 const RIPPLE_PART: f64 = 0.2;
 
-/// Flexor and extensor.
 #[derive(Debug)]
 pub(crate) struct Envelopes {
     parameters: Myo,
@@ -45,7 +43,7 @@ impl Envelopes {
         };
         let lifts = lifts.iter().map(|lift| {
             let side = lift.channel.get_ref().index() - MYO_FLEXOR;
-            (side, Span::new(lift.at_s.get_ref().get(), lift.for_s.get()), lift.pickup_mv.get())
+            (side, Span::of(&lift.at_s, lift.for_s), lift.pickup_mv.get())
         });
         Self {
             parameters: parameters.clone(),
@@ -56,7 +54,6 @@ impl Envelopes {
         }
     }
 
-    /// Voltages at the pins after one frame that ends at `t_s`.
     pub(crate) fn step(&mut self, t_s: f64, effort: &Effort) -> [f64; SIDES] {
         const { assert!(MYO_EXTENSOR == MYO_FLEXOR + 1) };
         let p = &self.parameters;
@@ -81,7 +78,6 @@ impl Envelopes {
     }
 }
 
-/// Two independent noises together. (The platform's own `hypot` is not the same on all of them.)
 fn both(a: f64, b: f64) -> f64 {
     (a * a + b * b).sqrt()
 }

@@ -21,30 +21,23 @@ const SPREADS: f64 = 1.4;
 /// The part of the picture in which the object lies, times the part of its points that have an edge to be seen moving
 /// (assumed).
 const TEXTURE_PART: f64 = 0.02;
-/// Slip below which a wrong picture shows slip and above which it shows none, px a picture.
 const SLIPS_PX: f64 = 0.3;
-/// What is seen to move in a wrong picture, in 1/10,000 of it: from hardly said to be slip to what a fast slip moves.
+/// Range of the motion that is reported in a wrong picture, in 1/10,000 of it.
 const WRONG_E4: (f64, f64) = (30.0, 200.0);
-/// How long an error of the angle lasts, s: where a part of the object has the wall's colours its rims are elsewhere. The crate's errors
-/// on drawn pictures differ by 0.02 degrees in 33 ms, by 0.24 in 1 s and by 0.39 in 3 s (rms; docs/vision.md).
+/// Time constant of an error of the angle, s: where the object has the wall's colours its rims are elsewhere.
 const ANGLE_LASTS_S: f64 = 2.0;
-/// One pixel in the world, mm: 320 of them over 30 mm of skin.
 const PIXEL_MM: f64 = 0.094;
 
 #[derive(Debug)]
 pub(crate) struct SkinCamera {
     parameters: Skin,
     patch_m: f64,
-    /// Part of the load on each marker.
     shares: [f64; MARKERS],
     noise: Noise,
-    /// What goes wrong is drawn apart, so that the rest is the same with and without.
     mistakes: Noise,
     is_wrong: bool,
-    /// How far the angle is off, in parts of its noise.
     angle_off: f64,
     pictures: u64,
-    /// How far the object has moved over the skin since the last picture, m.
     moved_m: f64,
     under_way: VecDeque<(f64, f64, CameraView)>,
 }
@@ -73,7 +66,6 @@ impl SkinCamera {
         }
     }
 
-    /// Goes on by one scan to `t_s`.
     pub(crate) fn step(&mut self, t_s: f64, touch: &Touch, pitch_rad: f64) {
         // Where the object rubs, and where it turns: seen at the rim of the contact.
         self.moved_m += touch.slide_m_s.abs() * STEP_S + touch.turn_m_s.abs() * STEP_S;
@@ -89,7 +81,6 @@ impl SkinCamera {
         self.under_way.push_back((t_s, t_s + self.parameters.delay_ms.get() / 1e3, view));
     }
 
-    /// The view that arrived just now.
     pub(crate) fn take(&mut self, t_s: f64) -> Option<CameraView> {
         let &(taken_s, arrives_s, view) = self.under_way.front()?;
         if arrives_s > t_s {
@@ -99,7 +90,6 @@ impl SkinCamera {
         Some(CameraView { age_ms: ((t_s - taken_s) * 1e3).round() as u16, ..view })
     }
 
-    /// Whether this picture is told wrongly, and what is then seen to move, in 1/10,000: mistakes come in bursts.
     fn goes_wrong(&mut self) -> Option<f64> {
         let (part, stretch) =
             (self.parameters.wrong_part.get(), self.parameters.wrong_pictures.get().max(1.0));

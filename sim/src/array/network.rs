@@ -6,9 +6,7 @@ use anyhow::{Context, anyhow, bail, ensure};
 use serde::{Deserialize, Serialize};
 use tenax_hal_shim::channel::{REFERENCE_MV, SAMPLE_MAX};
 use tenax_logic::array::detector::logistic_permille;
-use tenax_logic::array::{
-    ArrayDetector, FEATURES, Judgement, Layer, Mlp, Model, PreprocessorConfig, Reading, shipped,
-};
+use tenax_logic::array::{ArrayDetector, Judgement, Layer, Mlp, Model, PreprocessorConfig, Reading, shipped};
 
 use super::edges::{Confidences, Edges};
 use super::material::SEEN;
@@ -17,8 +15,6 @@ use crate::labelled::Step;
 
 /// The file in a folder of `tenax train`.
 pub const FILE: &str = "network.json";
-const H1: usize = 32;
-const H2: usize = 16;
 
 /// A network as `tenax train` writes it: the firmware's integers, what its features are made with, and on what noise it learned.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -51,8 +47,8 @@ pub struct Saved {
 /// The firmware's model with one of its windows.
 #[derive(Clone, Debug)]
 enum Windows {
-    Ten(Box<Model<H1, 1, H2, 10>>),
-    Forty(Box<Model<H1, 1, H2, 40>>),
+    Ten(Box<Model<10>>),
+    Forty(Box<Model<40>>),
 }
 
 /// A network, ready to judge.
@@ -129,7 +125,7 @@ impl Network {
     }
 }
 
-fn judge<const N: usize>(model: &Model<H1, 1, H2, N>, readings: &[Reading]) -> (Logits, Vec<bool>) {
+fn judge<const N: usize>(model: &Model<N>, readings: &[Reading]) -> (Logits, Vec<bool>) {
     let mut detector = ArrayDetector::new(model);
     readings
         .iter()
@@ -141,7 +137,7 @@ fn judge<const N: usize>(model: &Model<H1, 1, H2, N>, readings: &[Reading]) -> (
 }
 
 impl Saved {
-    fn model<const N: usize>(&self) -> anyhow::Result<Model<H1, 1, H2, N>> {
+    fn model<const N: usize>(&self) -> anyhow::Result<Model<N>> {
         let too_large = |_| anyhow!("a sum of the network could overflow");
         let (first, second, last) = (&self.first, &self.second, &self.last);
         Ok(Model {
@@ -152,13 +148,11 @@ impl Saved {
                 structure_knee: self.structure_knee,
                 ..PreprocessorConfig::DEFAULT
             },
-            network: Mlp::new(
-                Layer::<FEATURES, H1>::new(square(&first.0)?, fixed(&first.1)?, first.2)
-                    .map_err(too_large)?,
-                [Layer::<H1, H2>::new(square(&second.0)?, fixed(&second.1)?, second.2).map_err(too_large)?],
-                Layer::<H2, 1>::new([fixed(&last.0)?], [last.1], 0).map_err(too_large)?,
-            )
-            .map_err(too_large)?,
+            network: Mlp {
+                first: Layer::new(square(&first.0)?, fixed(&first.1)?, first.2).map_err(too_large)?,
+                second: Layer::new(square(&second.0)?, fixed(&second.1)?, second.2).map_err(too_large)?,
+                last: Layer::new([fixed(&last.0)?], [last.1], 0).map_err(too_large)?,
+            },
             judgement: Judgement {
                 logit_per_nat: self.logit_per_nat,
                 on_permille: self.edges.on_permille,

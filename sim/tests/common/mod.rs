@@ -1,6 +1,5 @@
 //! What the host tool's tests share.
 
-#[path = "../../../host-tests/src/onsets.rs"]
 pub mod onsets;
 
 pub mod hash;

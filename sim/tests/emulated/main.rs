@@ -13,7 +13,7 @@ mod head;
 mod last;
 mod link;
 mod motor;
-#[path = "../../../host-tests/src/onsets.rs"]
+#[path = "../common/onsets.rs"]
 mod onsets;
 mod resets;
 mod store;

@@ -22,24 +22,20 @@ const CLEAR_MIN: usize = 12;
 const MIDDLE_MAX_PERCENT: f32 = 58.0;
 /// The most that its outline may differ from an ellipse, of its radius: what lies behind the skin is seldom round.
 const IRREGULAR_MAX: f32 = 0.12;
-/// The most that it may move during the calibration, px.
 const MOVED_MAX_PX: f32 = 0.8;
-/// The most that its radius may change, px.
 const GROWTH_MAX_PX: f32 = 0.5;
 
 /// A calibration that goes on. Feed it [`FRAMES`] frames of an unloaded skin, then [`Calibration::markers`].
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Calibration {
-    candidates: [Option<Candidate>; MARKERS_MAX],
+    candidates: Vec<Candidate>,
     frames: u32,
 }
 
 #[derive(Clone, Copy, Debug)]
 struct Candidate {
     marker: Marker,
-    /// How well it stands out: the best view of a blob is kept.
     quality: f32,
-    /// Sums over the frames since the first, from which the mean pose follows.
     x: f32,
     y: f32,
     growth: f32,
@@ -47,23 +43,12 @@ struct Candidate {
     steady: bool,
 }
 
-impl Default for Calibration {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
 impl Calibration {
-    pub const fn new() -> Self {
-        Self { candidates: [None; MARKERS_MAX], frames: 0 }
-    }
-
-    /// Takes a frame. Returns whether it was the last that is needed.
     pub fn frame(&mut self, grey: &Plane) -> bool {
         if self.frames == 0 {
             self.search(grey);
         } else {
-            for candidate in self.candidates.iter_mut().flatten() {
+            for candidate in &mut self.candidates {
                 candidate.step(grey);
             }
         }
@@ -71,36 +56,20 @@ impl Calibration {
         self.frames >= FRAMES
     }
 
-    /// The markers, numbered by rows from the top left; returns how many there are.
-    pub fn markers(&self, into: &mut [Marker; MARKERS_MAX]) -> usize {
-        let steady = self.candidates.iter().flatten().filter(|candidate| {
+    /// The markers, numbered by rows from the top left.
+    pub fn markers(&self) -> Vec<Marker> {
+        let steady = self.candidates.iter().filter(|candidate| {
             candidate.steady && 10 * candidate.found >= 8 * (self.frames.saturating_sub(1))
         });
-        let mut count = 0;
-        for candidate in steady {
-            into[count] = Marker::new(candidate.mean_shape());
-            count += 1;
-        }
-        let markers = &mut into[..count];
+        let mut markers: Vec<Marker> = steady.map(|candidate| Marker::new(candidate.mean_shape())).collect();
         markers.sort_unstable_by_key(|marker| marker.rest.area);
         // The fisheye makes those at the border smaller, but not four times in area.
-        let usual = markers.get(count / 2).map_or(0, |marker| marker.rest.area);
-        let keep = |marker: &Marker| 4 * marker.rest.area >= usual && marker.rest.area <= 4 * usual;
-        let mut kept = 0;
-        for at in 0..count {
-            if keep(&markers[at]) {
-                markers[kept] = markers[at];
-                kept += 1;
-            }
-        }
-        markers[..kept].sort_unstable_by(|a, b| {
-            let row = |marker: &Marker| (marker.rest.at.y as u32, marker.rest.at.x as u32);
-            row(a).cmp(&row(b))
-        });
-        kept
+        let usual = markers.get(markers.len() / 2).map_or(0, |marker| marker.rest.area);
+        markers.retain(|marker| 4 * marker.rest.area >= usual && marker.rest.area <= 4 * usual);
+        markers.sort_unstable_by_key(|marker| (marker.rest.at.y as u32, marker.rest.at.x as u32));
+        markers
     }
 
-    /// Every place of a frame that looks like a marker.
     fn search(&mut self, grey: &Plane) {
         for top in (0..HEIGHT - SIDE / 2).step_by(STRIDE) {
             for left in (0..WIDTH - SIDE / 2).step_by(STRIDE) {
@@ -109,10 +78,9 @@ impl Calibration {
                 for cut in 2..=6 {
                     let dark = window.below(window.levels().cut(cut));
                     let count: u32 = dark.iter().map(|row| row.count_ones()).sum();
-                    let mut blobs = [Blob::NONE; 12];
-                    let found = window.blobs(&dark, AREA.0, &mut blobs);
-                    for blob in blobs[..found].iter().filter(|blob| !blob.cut && blob.area <= AREA.1) {
-                        if let Some((shape, quality)) = shape_of(grey, blob, count) {
+                    let blobs = window.blobs(&dark, AREA.0);
+                    for blob in blobs.into_iter().filter(|blob| !blob.cut && blob.area <= AREA.1) {
+                        if let Some((shape, quality)) = shape_of(grey, &blob, count) {
                             self.add(shape, quality);
                         }
                     }
@@ -126,21 +94,20 @@ impl Calibration {
         let near = |candidate: &Candidate| {
             candidate.marker.rest.at.distance(shape.at) < candidate.marker.rest.radius().max(shape.radius())
         };
-        let slot = match self.candidates.iter().position(|slot| slot.as_ref().is_some_and(near)) {
-            Some(at) if self.candidates[at].is_some_and(|candidate| candidate.quality >= quality) => return,
-            Some(at) => Some(at),
-            None => self.candidates.iter().position(Option::is_none),
+        let candidate = Candidate {
+            marker: Marker::new(shape),
+            quality,
+            x: 0.0,
+            y: 0.0,
+            growth: 0.0,
+            found: 0,
+            steady: true,
         };
-        if let Some(at) = slot {
-            self.candidates[at] = Some(Candidate {
-                marker: Marker::new(shape),
-                quality,
-                x: 0.0,
-                y: 0.0,
-                growth: 0.0,
-                found: 0,
-                steady: true,
-            });
+        match self.candidates.iter().position(near) {
+            Some(at) if self.candidates[at].quality >= quality => {}
+            Some(at) => self.candidates[at] = candidate,
+            None if self.candidates.len() < MARKERS_MAX => self.candidates.push(candidate),
+            None => {}
         }
     }
 }
@@ -169,9 +136,8 @@ impl Candidate {
     }
 }
 
-/// The marker that a blob may be, and how well it stands out.
 fn shape_of(grey: &Plane, blob: &Blob, dark_pixels: u32) -> Option<(Shape, f32)> {
-    let radius = libm::sqrtf(blob.area as f32 / core::f32::consts::PI);
+    let radius = libm::sqrtf(blob.area as f32 / std::f32::consts::PI);
     let mut at = blob.at;
     let mut outline = Outline::look(grey, at, &[radius; RAYS]);
     for _ in 0..2 {

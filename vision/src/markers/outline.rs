@@ -5,16 +5,15 @@
 //! marker was calibrated: a ray that sees no edge, or another one, is left out.
 
 use crate::frame::{HEIGHT, Plane, Point, WIDTH};
+use crate::plane_fit::PlaneFit;
 
 /// Rays from the middle.
 pub const RAYS: usize = 16;
-/// How far from where it is expected an edge is looked for, px.
 const REACH: f32 = 2.5;
 /// Steps along a ray, px.
 const STEP: f32 = 0.5;
 /// Samples along a ray: one more at each end, for the slope.
 const SAMPLES: usize = (2.0 * REACH / STEP) as usize + 3;
-/// As many as vectors have room for.
 const LANES: usize = SAMPLES.next_multiple_of(8);
 /// The rise from the marker to its surround that counts as an edge, grey levels.
 const CONTRAST_MIN: f32 = 10.0;
@@ -37,38 +36,28 @@ const DIRECTIONS: [(f32, f32); RAYS] = [
     (0.0, -1.0), (0.382_683_43, -0.923_879_5), (0.707_106_77, -0.707_106_77), (0.923_879_5, -0.382_683_43),
 ];
 
-/// What one ray met.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Edge {
-    /// Where, px from the middle.
     pub radius: f32,
-    /// How much brighter it is outside, grey levels; 0 if no edge was met.
     pub contrast: f32,
 }
 
-/// Edges seen from one place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Outline {
     pub middle: Point,
     pub edges: [Edge; RAYS],
 }
 
-/// How an outline lies to a calibrated one.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Fit {
-    /// Moved to the right, px.
     pub x: f32,
-    /// Moved down, px.
     pub y: f32,
     pub growth: f32,
-    /// Rays that agree.
     pub rays: usize,
-    /// Their rms distance from what the fit says, px.
     pub stray: f32,
 }
 
 impl Outline {
-    /// Looks from `middle` for edges near `radii`.
     pub fn look(grey: &Plane, middle: Point, radii: &[f32; RAYS]) -> Self {
         let mut edges = [Edge::default(); RAYS];
         for ((edge, &radius), direction) in edges.iter_mut().zip(radii).zip(DIRECTIONS) {
@@ -121,39 +110,25 @@ pub fn irregularity(radii: &[f32; RAYS]) -> f32 {
     libm::sqrtf(sum / n) / mean
 }
 
-/// How far `edge` is from where `fit` puts it, px.
 fn residual(fit: &Fit, ray: usize, edge: Edge, radius: f32) -> f32 {
     let (cos, sin) = DIRECTIONS[ray];
     (edge.radius - radius - fit.growth - fit.x * cos - fit.y * sin).abs()
 }
 
-/// Growth and move that bring `radii` nearest to the edges that are used, the clear ones counting more.
 fn least_squares(edges: &[Edge; RAYS], radii: &[f32; RAYS], used: &[bool; RAYS]) -> Option<Fit> {
-    let (mut n, mut c, mut s, mut cc, mut cs, mut ss) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
-    let (mut b, mut bc, mut bs) = (0.0f32, 0.0, 0.0);
+    let mut plane = PlaneFit::default();
     let mut rays = 0;
     for ray in (0..RAYS).filter(|&ray| used[ray]) {
-        let (cos, sin) = DIRECTIONS[ray];
         let weight = edges[ray].contrast.min(CONTRAST_FULL) / CONTRAST_FULL;
-        let off = edges[ray].radius - radii[ray];
+        plane.add(weight, DIRECTIONS[ray], edges[ray].radius - radii[ray]);
         rays += 1;
-        n += weight;
-        (c, s) = (c + weight * cos, s + weight * sin);
-        (cc, cs, ss) = (cc + weight * cos * cos, cs + weight * cos * sin, ss + weight * sin * sin);
-        (b, bc, bs) = (b + weight * off, bc + weight * off * cos, bs + weight * off * sin);
     }
     if rays < RAYS_MIN {
         return None;
     }
-    // A stiff wish that it has not grown: of half an outline nobody can tell growth from a move.
-    let n_stiff = n + 1.0;
-    let det = n_stiff * (cc * ss - cs * cs) - c * (c * ss - cs * s) + s * (c * cs - cc * s);
-    if det < 0.02 * n_stiff * n * n {
-        return None;
-    }
-    let growth = (b * (cc * ss - cs * cs) - c * (bc * ss - cs * bs) + s * (bc * cs - cc * bs)) / det;
-    let x = (n_stiff * (bc * ss - cs * bs) - b * (c * ss - cs * s) + s * (c * bs - bc * s)) / det;
-    let y = (n_stiff * (cc * bs - bc * cs) - c * (c * bs - bc * s) + b * (c * cs - cc * s)) / det;
+    // Growth is drawn towards 0: half an outline does not tell growth from a move.
+    let n = plane.weight();
+    let [growth, x, y] = plane.solve(1.0, 0.02 * (n + 1.0) * n * n)?;
     let mut fit = Fit { x, y, growth, rays, stray: 0.0 };
     let mut sum = 0.0;
     for ray in (0..RAYS).filter(|&ray| used[ray]) {
@@ -164,7 +139,6 @@ fn least_squares(edges: &[Edge; RAYS], radii: &[f32; RAYS], used: &[bool; RAYS])
     Some(fit)
 }
 
-/// The edge that a ray meets near `radius`: the middle of the rise, each place counting by the square of its slope.
 fn along(grey: &Plane, middle: Point, radius: f32, (cos, sin): (f32, f32)) -> Edge {
     let first = radius - REACH - STEP;
     let place = |k: usize| {
@@ -178,11 +152,10 @@ fn along(grey: &Plane, middle: Point, radius: f32, (cos, sin): (f32, f32)) -> Ed
     // All places first, for the compiler's vectors.
     let (mut xs, mut ys) = ([0; LANES], [0; LANES]);
     for k in 0..LANES {
-        // To 32 bits with a sign it is one instruction, on a PC and on a microcontroller.
         let (x, y) = place(k);
         (xs[k], ys[k]) = ((x * 256.0) as i32, (y * 256.0) as i32);
     }
-    let levels: [i32; SAMPLES] = core::array::from_fn(|k| sample(grey, (xs[k], ys[k])));
+    let levels: [i32; SAMPLES] = std::array::from_fn(|k| sample(grey, (xs[k], ys[k])));
     let (mut rise, mut sum, mut weighted) = (0, 0.0, 0.0);
     for k in 1..SAMPLES - 1 {
         // Inside of the middle the ray would see the far edge, which falls; a fall is no edge anyway.
@@ -200,7 +173,6 @@ fn along(grey: &Plane, middle: Point, radius: f32, (cos, sin): (f32, f32)) -> Ed
     Edge { radius: first + STEP * weighted / sum, contrast: rise as f32 / (2 * ONE_LEVEL) as f32 }
 }
 
-/// Whether a place has four pixels around it.
 fn is_inside((x, y): (f32, f32)) -> bool {
     x >= 0.0 && y >= 0.0 && x < (WIDTH - 1) as f32 && y < (HEIGHT - 1) as f32
 }

@@ -7,8 +7,9 @@ use crate::mask::eight_bits;
 
 /// Side of the window, px (FingerVision 2017, section IV).
 pub const SIDE: usize = 30;
+/// Blobs of a window that are told apart.
+const BLOBS_MAX: usize = 12;
 
-/// A window's place in the picture and what it holds.
 #[derive(Clone, Debug)]
 pub struct Window {
     left: usize,
@@ -16,38 +17,26 @@ pub struct Window {
     levels: [[u8; SIDE]; SIDE],
 }
 
-/// One connected dark piece.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Blob {
-    /// Its middle.
     pub at: Point,
     pub area: u32,
-    /// Whether it reaches the window's border, where nobody knows how it goes on.
     pub cut: bool,
 }
 
-impl Blob {
-    pub const NONE: Self = Self { at: Point { x: 0.0, y: 0.0 }, area: 0, cut: true };
-}
-
-/// The levels between which a window's threshold lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Levels {
-    /// Level that a hundredth of the pixels is below.
     pub dark: u8,
-    /// Level that half of the pixels is below.
     pub surround: u8,
 }
 
 impl Levels {
-    /// The level that is `eighths` of the way from dark to usual.
     pub const fn cut(self, eighths: u16) -> u8 {
         (self.dark as u16 + (self.surround.saturating_sub(self.dark) as u16 * eighths) / 8) as u8
     }
 }
 
 impl Window {
-    /// The window whose middle is `at`, moved inside the picture where it would stick out.
     pub fn around(grey: &Plane, at: Point) -> Self {
         let corner = |middle: f32, end: usize| (middle as usize).saturating_sub(SIDE / 2).min(end - SIDE);
         let (left, top) = (corner(at.x + 0.5, WIDTH), corner(at.y + 0.5, HEIGHT));
@@ -59,7 +48,6 @@ impl Window {
         Self { left, top, levels }
     }
 
-    /// Its dark and its usual level.
     pub fn levels(&self) -> Levels {
         // Steps of 4: finer than the noise, and four times fewer to add up.
         let mut counts = [0u16; 64];
@@ -78,7 +66,6 @@ impl Window {
         Levels { dark: below(pixels / 100), surround: below(pixels / 2) }
     }
 
-    /// The pixels that are below `threshold`, a word a row.
     pub fn below(&self, threshold: u8) -> [u32; SIDE] {
         let mut rows = [0; SIDE];
         for (bits, levels) in rows.iter_mut().zip(&self.levels) {
@@ -91,12 +78,12 @@ impl Window {
         rows
     }
 
-    /// The blobs of at least `area_min` pixels in `dark`; at most as many as `into` holds. Returns how many there are.
-    pub fn blobs(&self, dark: &[u32; SIDE], area_min: u32, into: &mut [Blob]) -> usize {
+    /// The first [`BLOBS_MAX`] blobs of at least `area_min` pixels in `dark`.
+    pub fn blobs(&self, dark: &[u32; SIDE], area_min: u32) -> Vec<Blob> {
         let mut rest = *dark;
-        let mut found = 0;
+        let mut found = Vec::new();
         for row in 0..SIDE {
-            while rest[row] != 0 && found < into.len() {
+            while rest[row] != 0 && found.len() < BLOBS_MAX {
                 let piece = flood(&rest, row);
                 let (mut area, mut sum_x, mut sum_y) = (0, 0, 0);
                 let mut cut = (piece[0] | piece[SIDE - 1]) != 0;
@@ -115,8 +102,7 @@ impl Window {
                 if area >= area_min {
                     let middle = |sum: u32, corner: usize| sum as f32 / area as f32 + corner as f32;
                     let at = Point { x: middle(sum_x, self.left), y: middle(sum_y, self.top) };
-                    into[found] = Blob { at, area, cut };
-                    found += 1;
+                    found.push(Blob { at, area, cut });
                 }
             }
         }
@@ -124,7 +110,6 @@ impl Window {
     }
 }
 
-/// The connected piece that the lowest bit of `row` belongs to; pixels that touch at a corner are connected.
 fn flood(dark: &[u32; SIDE], row: usize) -> [u32; SIDE] {
     let mut piece = [0u32; SIDE];
     piece[row] = dark[row] & dark[row].wrapping_neg();
@@ -158,11 +143,9 @@ fn flood(dark: &[u32; SIDE], row: usize) -> [u32; SIDE] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use alloc::vec;
 
-    fn picture(discs: &[(f32, f32, f32)]) -> alloc::boxed::Box<Plane> {
-        let mut grey: alloc::boxed::Box<Plane> =
-            vec![200; crate::frame::PIXELS].into_boxed_slice().try_into().unwrap();
+    fn picture(discs: &[(f32, f32, f32)]) -> Box<Plane> {
+        let mut grey: Box<Plane> = vec![200; crate::frame::PIXELS].into_boxed_slice().try_into().unwrap();
         for (at, level) in grey.iter_mut().enumerate() {
             let (x, y) = ((at % WIDTH) as f32, (at / WIDTH) as f32);
             if discs.iter().any(|&(cx, cy, r)| libm::hypotf(x - cx, y - cy) <= r) {
@@ -177,9 +160,8 @@ mod tests {
         let grey = picture(&[(100.0, 100.0, 4.0), (109.0, 104.0, 3.0), (113.0, 90.0, 0.5)]);
         let window = Window::around(&grey, Point { x: 103.0, y: 100.0 });
         assert_eq!(window.levels(), Levels { dark: 22, surround: 202 });
-        let mut blobs = [Blob::NONE; 8];
-        let found = window.blobs(&window.below(110), 5, &mut blobs);
-        assert_eq!(found, 2, "{blobs:?}");
+        let blobs = window.blobs(&window.below(110), 5);
+        assert_eq!(blobs.len(), 2, "{blobs:?}");
         assert_eq!((blobs[0].at, blobs[0].area), (Point { x: 100.0, y: 100.0 }, 49));
         assert_eq!((blobs[1].at, blobs[1].area), (Point { x: 109.0, y: 104.0 }, 29));
         assert!(!blobs[0].cut && !blobs[1].cut);
@@ -197,11 +179,10 @@ mod tests {
                 _ => 1 << (SIDE - 1),
             };
         }
-        let mut blobs = [Blob::NONE; 8];
-        assert_eq!(window.blobs(&rows, 1, &mut blobs), 1);
-        assert!(blobs[0].cut);
-        assert_eq!(window.blobs(&[(1 << SIDE) - 1; SIDE], 1, &mut blobs), 1);
-        assert_eq!(blobs[0].area, 900);
-        assert_eq!(window.blobs(&[0; SIDE], 1, &mut blobs), 0);
+        let [spiral] = window.blobs(&rows, 1)[..] else { panic!("one blob") };
+        assert!(spiral.cut);
+        let [full] = window.blobs(&[(1 << SIDE) - 1; SIDE], 1)[..] else { panic!("one blob") };
+        assert_eq!(full.area, 900);
+        assert!(window.blobs(&[0; SIDE], 1).is_empty());
     }
 }

@@ -23,7 +23,7 @@ impl Mask {
         if count < 2 {
             return;
         }
-        let mut rest = core::mem::take(self);
+        let mut rest = std::mem::take(self);
         for &(_, _, area) in &starts[..count] {
             // Pieces come in the same order again.
             let Some((_, piece)) = rest.take_piece() else { break };
@@ -64,9 +64,8 @@ impl Mask {
         *self = kept;
     }
 
-    /// Keeps the pieces that reach the picture's border.
     pub fn keep_at_border(&mut self) {
-        let mut rest = core::mem::take(self);
+        let mut rest = std::mem::take(self);
         for _ in 0..PIECES_MAX {
             let Some((_, piece)) = rest.take_piece() else { break };
             if piece.comes_within(1) {
@@ -75,14 +74,12 @@ impl Mask {
         }
     }
 
-    /// Whether a pixel is this near to the border, px, fewer than a word has.
     pub fn comes_within(&self, px: usize) -> bool {
         let ends = self.rows[..px].iter().chain(&self.rows[HEIGHT - px..]).flatten().any(|&word| word != 0);
         let (left, right) = ((1 << px) - 1, Word::MAX << (BITS - px));
         ends || self.rows.iter().any(|row| row[0] & left != 0 || row[WORDS - 1] & right != 0)
     }
 
-    /// Takes the piece out that holds the first pixel: the row and word where it begins, and the piece.
     fn take_piece(&mut self) -> Option<((usize, usize), Self)> {
         let (y, word) = (0..HEIGHT)
             .find_map(|y| self.rows[y].iter().position(|&word| word != 0).map(|word| (y, word)))?;
@@ -115,7 +112,7 @@ impl Mask {
     }
 
     /// Grows from a row into the next as far as `within` goes. Returns whether it did.
-    fn grow(&mut self, from: usize, to: usize, within: &Self) -> bool {
+    pub(super) fn grow(&mut self, from: usize, to: usize, within: &Self) -> bool {
         let (mut seed, mut new) = (self.rows[to], 0);
         for (word, seed) in seed.iter_mut().enumerate() {
             let reached = self.rows[from][word] & within.rows[to][word];

@@ -1,6 +1,4 @@
 use super::*;
-use alloc::vec;
-use alloc::vec::Vec;
 
 fn rectangle(left: usize, top: usize, right: usize, bottom: usize) -> Mask {
     let (mut mask, mut block) = (Mask::EMPTY, Mask::EMPTY);
@@ -8,20 +6,6 @@ fn rectangle(left: usize, top: usize, right: usize, bottom: usize) -> Mask {
     block.insert_block(left..right, top..bottom);
     assert_eq!(mask, block);
     mask
-}
-
-#[test]
-fn growing_and_shrinking_cross_words_and_stop_at_the_border() {
-    let mut mask = rectangle(62, 10, 66, 12);
-    mask.dilate(7);
-    assert_eq!(mask, rectangle(55, 3, 73, 19));
-    mask.erode(7);
-    assert_eq!(mask, rectangle(62, 10, 66, 12));
-    let mut corner = rectangle(0, 0, 3, 3);
-    corner.erode(2);
-    assert_eq!(corner, rectangle(0, 0, 1, 1));
-    corner.dilate(2);
-    assert_eq!(corner, rectangle(0, 0, 3, 3));
 }
 
 #[test]
@@ -128,7 +112,7 @@ fn moments_are_those_of_a_rectangle() {
     assert!(moments.angle_rad().abs() < 1e-4 && moments.eccentricity() > 0.9);
     let mut slanted = Mask::EMPTY;
     (0..100).for_each(|at| slanted.insert(100 + at, 200 - at));
-    assert!((slanted.moments().unwrap().angle_rad() + core::f32::consts::FRAC_PI_4).abs() < 1e-4);
+    assert!((slanted.moments().unwrap().angle_rad() + std::f32::consts::FRAC_PI_4).abs() < 1e-4);
     assert!(Mask::EMPTY.moments().is_none());
 }
 
@@ -149,7 +133,9 @@ fn an_outline_is_its_pixels_and_overlap_is_the_share_of_what_is_in_either() {
 #[test]
 fn growing_and_shrinking_are_what_is_around_each_pixel() {
     let mut state = 1u32;
-    for (times, share) in [(0, 4), (1, 60), (2, 2), (3, 200), (7, 900), (16, 2_000), (31, 8_000)] {
+    for (times, share) in
+        [(0, 4), (1, 60), (2, 2), (3, 200), (7, 900), (16, 2_000), (31, 8_000), (40, 12_000)]
+    {
         let mut mask = Mask::EMPTY;
         for at in 0..PIXELS {
             state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);

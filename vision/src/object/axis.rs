@@ -10,7 +10,6 @@ use crate::rectify::Rectifier;
 
 /// Below this eccentricity an object has no long rims.
 const ECCENTRICITY_MIN: f32 = 0.1;
-/// How long a slice is along the axis, px.
 const SLICE_PX: f32 = 2.0;
 /// Slices, from the middle half of them to each side.
 const SLICES: usize = 256;
@@ -18,30 +17,26 @@ const SLICES: usize = 256;
 const SLICES_MIN: usize = 16;
 /// A part of the slices at each end belongs to the short rims: one of so many.
 const END: usize = 12;
-/// How far from the line a point of the rim may be, px.
 const NEAR_PX: f32 = 2.5;
 /// Share of the slices that must lie on a line for it to be a rim.
 const SHARE_MIN: f32 = 0.25;
-/// How far a rim may be off the moments' direction, radians.
+/// Largest angle between a rim and the moments' direction, radians.
 const OFF_MAX: f32 = 1.0;
-/// Where less of the outline lies on the rims, something leans on the object and has turned the moments: ...
+/// Share of the outline on the rims below which something may lean on the object and have turned the moments.
 const SHARE_CLEAR: f32 = 0.75;
-/// ... rims are looked for there, too, radians aside.
+/// Directions in which rims are then looked for too, radians from that of the moments.
 const ASIDE: [f32; 2] = [-0.5, 0.5];
 /// Outermost pixels that are looked at.
 const PLACES_MAX: usize = 2048;
-/// Points that are looked at at once.
-const LANES: usize = 8;
 /// Times that the slices are cut anew, across the axis that was found.
 const ROUNDS: usize = 3;
 /// Steps of the reweighted least squares.
 const STEPS: usize = 6;
 
-/// A rim's points: how far along the axis, how far across. Past the last they are nowhere.
+/// Points of a rim along and across the axis, px.
 struct Rim {
-    along: [f32; SLICES],
-    across: [f32; SLICES],
-    count: usize,
+    along: Vec<f32>,
+    across: Vec<f32>,
 }
 
 /// A line: its slope, how well that is known, and the share of the points that lie on it.
@@ -73,7 +68,7 @@ pub fn find(object: &Mask, moments: &Moments, lens: Option<&Rectifier>) -> Rims 
     if best.share == 0.0 || (best.angle - coarse).abs() > OFF_MAX {
         return none;
     }
-    let half = core::f32::consts::FRAC_PI_2;
+    let half = std::f32::consts::FRAC_PI_2;
     let angle = match best.angle {
         angle if angle > half => angle - 2.0 * half,
         angle if angle < -half => angle + 2.0 * half,
@@ -82,10 +77,8 @@ pub fn find(object: &Mask, moments: &Moments, lens: Option<&Rectifier>) -> Rims 
     Rims { angle, ..best }
 }
 
-/// The places of an object's outermost pixels, from its middle.
 struct Outline {
-    places: [(f32, f32); PLACES_MAX],
-    count: usize,
+    places: Vec<(f32, f32)>,
 }
 
 /// The direction of both long rims, radians, and the share of the outline that lies on them.
@@ -101,17 +94,16 @@ impl Outline {
         let (mut inside, mut rim) = (object.clone(), object.clone());
         inside.erode(1);
         rim.subtract(&inside);
-        let mut outline = Self { places: [(0.0, 0.0); PLACES_MAX], count: 0 };
+        let mut outline = Self { places: Vec::new() };
         rim.for_each(|at| {
             let place = lens.map_or_else(|| place(at), |lens| lens.place(at));
-            if let Some(slot) = outline.places.get_mut(outline.count) {
-                (*slot, outline.count) = ((place.x - middle.x, place.y - middle.y), outline.count + 1);
+            if outline.places.len() < PLACES_MAX {
+                outline.places.push((place.x - middle.x, place.y - middle.y));
             }
         });
         outline
     }
 
-    /// The long rims near this direction; their share is 0 if there are none.
     fn rims(&self, from: f32) -> Rims {
         let mut rims = Rims { angle: from, share: 0.0 };
         for _ in 0..ROUNDS {
@@ -121,11 +113,11 @@ impl Outline {
         rims
     }
 
-    /// By how much both rims lean from the direction `angle`, and their share. None without rims.
+    /// Lean of both rims from the direction `angle`, and their share. None without rims.
     fn slope(&self, angle: f32) -> Option<(f32, f32)> {
         let (sin, cos) = (libm::sinf(angle), libm::cosf(angle));
         let (mut low, mut high) = ([f32::INFINITY; SLICES], [f32::NEG_INFINITY; SLICES]);
-        for (dx, dy) in &self.places[..self.count] {
+        for (dx, dy) in &self.places {
             let (along, across) = (dx * cos + dy * sin, dy * cos - dx * sin);
             let slice = along / SLICE_PX + SLICES as f32 / 2.0;
             if (0.0..SLICES as f32).contains(&slice) {
@@ -158,19 +150,17 @@ impl Rim {
         let first = outermost.iter().position(is_there)?;
         let last = outermost.iter().rposition(is_there)?;
         let end = (last - first) / END;
-        let mut rim = Self { along: [0.0; SLICES], across: [f32::INFINITY; SLICES], count: 0 };
         let inner = outermost.iter().enumerate().take(last.saturating_sub(end)).skip(first + end);
-        for (slice, &across) in inner.filter(|(_, across)| is_there(across)) {
-            rim.along[rim.count] = (slice as f32 - SLICES as f32 / 2.0) * SLICE_PX;
-            rim.across[rim.count] = across;
-            rim.count += 1;
-        }
-        (rim.count >= SLICES_MIN).then_some(rim)
+        let points = inner.filter(|(_, across)| is_there(across));
+        let along = |slice: usize| (slice as f32 - SLICES as f32 / 2.0) * SLICE_PX;
+        let (along, across): (Vec<f32>, Vec<f32>) =
+            points.map(|(slice, &across)| (along(slice), across)).unzip();
+        (along.len() >= SLICES_MIN).then_some(Self { along, across })
     }
 
     /// The line that most of the points lie on, None if they lie on none.
     fn line(&self) -> Option<Line> {
-        let points = || self.along.iter().zip(&self.across).take(self.count);
+        let points = || self.along.iter().zip(&self.across);
         let (mut slope, mut offset) = self.coarse();
         let (mut weight, mut near) = (0.0, 0);
         for _ in 0..STEPS {
@@ -194,15 +184,14 @@ impl Rim {
             offset = (wy - slope * wx) / w;
             weight = det / w;
         }
-        let share = near as f32 / self.count as f32;
+        let share = near as f32 / self.along.len() as f32;
         (share >= SHARE_MIN).then_some(Line { slope, weight, share })
     }
 
-    /// Slope and offset of the line through two points that are far apart near which most of the others lie.
     fn coarse(&self) -> (f32, f32) {
-        let mut best = (0, 0.0, 0.0);
-        for reach in [self.count / 3, self.count / 2, 2 * self.count / 3] {
-            for a in (0..self.count - reach).step_by(2) {
+        let (mut best, count) = ((0, 0.0, 0.0), self.along.len());
+        for reach in [count / 3, count / 2, 2 * count / 3] {
+            for a in (0..count - reach).step_by(2) {
                 let b = a + reach;
                 let slope = (self.across[b] - self.across[a]) / (self.along[b] - self.along[a]);
                 let offset = self.across[a] - slope * self.along[a];
@@ -215,17 +204,9 @@ impl Rim {
         (best.1, best.2)
     }
 
-    /// How many points lie near a line: in lanes, for the compiler's vectors.
     fn near(&self, slope: f32, offset: f32) -> u32 {
-        let mut near = [0; LANES];
-        let lanes = self.along.as_chunks::<LANES>().0.iter().zip(self.across.as_chunks::<LANES>().0);
-        for (along, across) in lanes.take(self.count.div_ceil(LANES)) {
-            for lane in 0..LANES {
-                let off = across[lane] - offset - slope * along[lane];
-                near[lane] += u32::from(off.abs() < NEAR_PX);
-            }
-        }
-        near.iter().sum()
+        let points = self.along.iter().zip(&self.across);
+        points.map(|(along, across)| u32::from((across - offset - slope * along).abs() < NEAR_PX)).sum()
     }
 }
 
@@ -247,10 +228,9 @@ mod tests {
         mask
     }
 
-    /// Degrees off: by the rims, and by the moments.
     fn off(angle: f32, mask: &Mask) -> (f32, f32) {
         let moments = mask.moments().unwrap();
-        let wrapped = |off: f32| off - core::f32::consts::PI * libm::roundf(off / core::f32::consts::PI);
+        let wrapped = |off: f32| off - std::f32::consts::PI * libm::roundf(off / std::f32::consts::PI);
         (
             wrapped(find(mask, &moments, None).angle - angle).to_degrees().abs(),
             wrapped(moments.angle_rad() - angle).to_degrees().abs(),

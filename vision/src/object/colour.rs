@@ -1,8 +1,5 @@
 //! Hue and saturation in 100 x 10 bins (FingerVision 2017, section III B), and six steps of brightness.
 
-use alloc::boxed::Box;
-use alloc::vec;
-
 pub const HUES: usize = 100;
 pub const SATURATIONS: usize = 10;
 /// Steps of brightness, each with its own bins: a grey card and a white wall differ in nothing else. 1 is the paper's.
@@ -10,8 +7,6 @@ pub const VALUES: usize = 6;
 pub const BINS: usize = VALUES * HUES * SATURATIONS;
 /// Bits of each colour that the table looks at: with 5 the hue of a nearly grey card falls into bins at random.
 const BITS: u32 = 6;
-/// Whether bins are looked up: the table takes half a megabyte, which a microcontroller does not have.
-const LOOKED_UP: bool = !cfg!(feature = "quarter");
 
 pub fn bin(red: u8, green: u8, blue: u8) -> u16 {
     let (red, green, blue) = (i32::from(red), i32::from(green), i32::from(blue));
@@ -32,7 +27,6 @@ pub fn bin(red: u8, green: u8, blue: u8) -> u16 {
     (step + hue as usize * SATURATIONS + saturation as usize) as u16
 }
 
-/// The middle of the levels that the table does not tell apart.
 const fn coarse(level: u8) -> u8 {
     level >> (8 - BITS) << (8 - BITS) | 1 << (7 - BITS)
 }
@@ -42,15 +36,9 @@ pub struct Bins {
     table: Box<[u16]>,
 }
 
-impl Default for Bins {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
 impl Bins {
     pub fn new() -> Self {
-        let mut table = vec![0; if LOOKED_UP { 1 << (3 * BITS) } else { 0 }].into_boxed_slice();
+        let mut table = vec![0; 1 << (3 * BITS)].into_boxed_slice();
         for (at, entry) in table.iter_mut().enumerate() {
             let level = |shift: u32| coarse((at >> shift << (8 - BITS)) as u8);
             *entry = bin(level(2 * BITS), level(BITS), level(0));
@@ -60,9 +48,6 @@ impl Bins {
 
     #[inline]
     pub fn of(&self, red: u8, green: u8, blue: u8) -> usize {
-        if !LOOKED_UP {
-            return usize::from(bin(coarse(red), coarse(green), coarse(blue)));
-        }
         let level = |colour: u8| usize::from(colour >> (8 - BITS));
         usize::from(self.table[level(red) << (2 * BITS) | level(green) << BITS | level(blue)])
     }

@@ -5,10 +5,8 @@
 
 use crate::mask::Mask;
 
-/// How far from the border an object may end for what differs there to be its end, px.
 const REACH_PX: usize = 24;
 
-/// Whether `object` is cut by the border. `unknown` is what differs from the scene and may be more of it, if anything.
 pub fn is_cut(object: &Mask, unknown: Option<&Mask>) -> bool {
     if object.comes_within(1) {
         return true;
@@ -29,7 +27,7 @@ pub fn is_cut(object: &Mask, unknown: Option<&Mask>) -> bool {
 mod tests {
     use super::*;
 
-    fn block(columns: core::ops::Range<usize>, rows: core::ops::Range<usize>) -> Mask {
+    fn block(columns: std::ops::Range<usize>, rows: std::ops::Range<usize>) -> Mask {
         let mut mask = Mask::EMPTY;
         rows.for_each(|y| columns.clone().for_each(|x| mask.insert(x, y)));
         mask

@@ -8,15 +8,11 @@ use super::scene::Scene;
 use crate::frame::{Frame, HEIGHT, WIDTH};
 use crate::mask::Mask;
 
-/// How many times more an object's rim stands out than what is remembered there. Of drawn objects that stand still
-/// 2.6 times and more, 4.7 in nineteen of twenty pictures; of ghosts 3.2 times or less in nineteen of twenty.
+/// Contrast of an object's rim over that of what is remembered there, at least.
 const STANDS_OUT: u32 = 3;
-/// A rim with more contrast than this is an object's, levels of a colour over six pixels: of drawn objects that stand still it is 22 or
-/// more, of ghosts 19 or less in nineteen of twenty pictures.
+/// A rim with more contrast than this is an object's, levels of a colour over six pixels.
 const CONTRAST_MIN: u32 = 24;
-/// Rim pixels that are needed to tell.
 const RIM_MIN_PX: u32 = 60;
-/// How far from the rim the colours are compared, px: it is found to a pixel or two only.
 const REACH: usize = 3;
 
 pub fn is_one(object: &Mask, skin: &Mask, frame: &Frame, scene: &Scene) -> bool {
@@ -41,7 +37,6 @@ pub fn is_one(object: &Mask, skin: &Mask, frame: &Frame, scene: &Scene) -> bool 
     count >= RIM_MIN_PX && seen < CONTRAST_MIN * count && seen < STANDS_OUT * remembered
 }
 
-/// How far two colours are from each other.
 fn far(a: (u8, u8, u8), b: (u8, u8, u8)) -> u32 {
     u32::from(a.0.abs_diff(b.0).max(a.1.abs_diff(b.1)).max(a.2.abs_diff(b.2)))
 }

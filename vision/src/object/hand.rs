@@ -6,9 +6,9 @@
 use crate::frame::Frame;
 use crate::mask::Mask;
 
-/// How much redder than green skin is, white balance corrected, 1/64.
+/// Red of skin over green, white balance corrected, 1/64.
 const REDDER: (u32, u32) = (70, 110);
-/// How much redder than blue, 1/64.
+/// Red over blue, 1/64.
 const WARMER: u32 = 74;
 
 /// Takes a hand out of `object`, if what is left is large enough to be one, `least` pixels.
@@ -40,7 +40,7 @@ pub fn leave_out(object: &mut Mask, frame: &Frame, white: [u8; 3], least: u32) {
     let mut rest = skin;
     rest.invert();
     rest.intersect(object);
-    // What is left of its rim is not the object.
+    // Its rim remains and is not the object.
     rest.erode(4);
     rest.dilate(4);
     rest.intersect(object);

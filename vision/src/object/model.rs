@@ -1,34 +1,24 @@
 //! What colours the object has (FingerVision 2017, equation 1).
 
-use alloc::boxed::Box;
-use alloc::vec;
-
 use super::colour::BINS;
 
 /// A count of pixels for each bin: one colour covers less than 65 536 of them.
 pub type Histogram = [u16; BINS];
 
-/// Frames that the model is made of: the last ones in which something moved. A microcontroller has no memory for the paper's 200.
-pub const FRAMES: usize = if cfg!(feature = "quarter") { 16 } else { 200 };
-/// How much of the background is taken away, in halves (f_bg = 1.5).
+/// Frames that the model is made of: the last ones in which something moved.
+pub const FRAMES: usize = 200;
+/// Part of the background that is taken away, in halves (f_bg = 1.5).
 const BACKGROUND_HALVES: u32 = 3;
-/// What is left counts half (f_gain = 0.5).
+/// Gain of the rest, in halves (f_gain = 0.5).
 const GAIN_HALVES: u32 = 1;
 /// The most that a bin holds.
 const FULL: u32 = 255;
 
 #[derive(Clone, Debug)]
 pub struct ObjectModel {
-    /// What each of the last frames added.
     added: Box<[[u8; BINS]]>,
     sums: Box<Histogram>,
     next: usize,
-}
-
-impl Default for ObjectModel {
-    fn default() -> Self {
-        Self::new()
-    }
 }
 
 impl ObjectModel {
@@ -36,7 +26,6 @@ impl ObjectModel {
         Self { added: vec![[0; BINS]; FRAMES].into_boxed_slice(), sums: Box::new([0; BINS]), next: 0 }
     }
 
-    /// Adds what moves, less what the background holds of it.
     pub fn learn(&mut self, moving: &Histogram, background: &Histogram) {
         let bins =
             self.added[self.next].iter_mut().zip(self.sums.iter_mut()).zip(moving.iter().zip(background));

@@ -3,9 +3,6 @@
 //! For each pixel: its colour and how much that varies. It follows slowly where nothing is held in front of it and stands
 //! still where the object is, so that an object that is held still does not become background.
 
-use alloc::boxed::Box;
-use alloc::vec;
-
 use crate::frame::{Frame, PIXELS, Plane, WIDTH};
 use crate::mask::Mask;
 
@@ -23,31 +20,21 @@ const LIGHT: (i32, i32) = (30, 235);
 /// A change of the light below this is none, 1/256.
 const LIGHT_MIN: i32 = 2;
 
-/// A plane of levels with a fraction.
 type Levels = Box<[i16; PIXELS]>;
 
-/// What is behind the skin.
 #[derive(Clone, Debug)]
 pub struct Scene {
     red: Levels,
     green: Levels,
     blue: Levels,
-    /// Mean distance from those levels.
     varies: Levels,
     frames: u32,
 }
 
-/// A plane on the heap, never on the stack.
 pub(super) fn levels() -> Levels {
     match vec![0; PIXELS].into_boxed_slice().try_into() {
         Ok(plane) => plane,
         Err(_) => unreachable!("its length is that of a plane"),
-    }
-}
-
-impl Default for Scene {
-    fn default() -> Self {
-        Self::new()
     }
 }
 
@@ -56,7 +43,6 @@ impl Scene {
         Self { red: levels(), green: levels(), blue: levels(), varies: levels(), frames: 0 }
     }
 
-    /// Marks with 1 the pixels that are not the scene's.
     pub fn differs(&self, frame: &Frame, into: &mut [u8; PIXELS]) {
         let (red, green, blue) = (frame.red, frame.green, frame.blue);
         let (old_red, old_green, old_blue, varies) = (&*self.red, &*self.green, &*self.blue, &*self.varies);
@@ -125,7 +111,6 @@ impl Scene {
         }
     }
 
-    /// Its mean colour: red, green, blue.
     pub fn mean_colour(&self) -> [u8; 3] {
         // Every 61st pixel stands for all.
         [&self.red, &self.green, &self.blue].map(|plane| {
@@ -141,7 +126,6 @@ impl Scene {
     }
 }
 
-/// How far a level is from a remembered one, with its fraction.
 #[inline]
 fn apart(level: u8, old: i16) -> i16 {
     (((i16::from(level)) << FRACTION) - old).abs()

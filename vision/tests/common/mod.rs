@@ -7,12 +7,10 @@ use std::process::{Command, Stdio};
 
 use tenax_vision::frame::{FRAME_BYTES, Frame, PIXELS, Plane, WIDTH};
 
-/// A file of the real recordings.
 pub fn recording(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/fingervision").join(name)
 }
 
-/// Calls `each` with the number and the picture of every frame of a video.
 pub fn for_each_frame(video: &Path, mut each: impl FnMut(usize, Frame)) {
     let mut ffmpeg = Command::new("ffmpeg")
         .args(["-v", "error", "-i"])
@@ -31,12 +29,10 @@ pub fn for_each_frame(video: &Path, mut each: impl FnMut(usize, Frame)) {
     assert!(ffmpeg.wait().expect("ffmpeg ends").success());
 }
 
-/// A plane on the heap.
 pub fn plane(level: u8) -> Box<Plane> {
     vec![level; PIXELS].into_boxed_slice().try_into().expect("its size")
 }
 
-/// Numbers without pattern, the same every time.
 pub struct Noise(pub u64);
 
 impl Noise {
@@ -46,13 +42,11 @@ impl Noise {
         (self.0 >> 40) as f32 / (1u64 << 24) as f32
     }
 
-    /// Nearly normal, standard deviation 1.
     pub fn normal(&mut self) -> f32 {
         (0..12).map(|_| self.even()).sum::<f32>() - 6.0
     }
 }
 
-/// Draws dark discs on `background`, each pixel as far dark as it is covered, and adds noise of `sigma` grey levels.
 pub fn draw_discs(
     discs: &[(f32, f32, f32)],
     background: impl Fn(f32, f32) -> f32,

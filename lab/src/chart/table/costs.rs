@@ -8,7 +8,7 @@ use std::time::Instant;
 use tenax_frames::quantile::middle;
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::motor::MotorDrive;
-use tenax_logic::array::{MlpDetector, Preprocessor};
+use tenax_logic::array::{Preprocessor, ShippedDetector};
 use tenax_logic::config::Config;
 use tenax_logic::detectors::Detector;
 use tenax_logic::force::FrictionDetector;
@@ -64,7 +64,7 @@ fn parts(network: HebbianDetector) -> Vec<Part> {
         ("s1", Box::new(|| detector(S1::default(), |config| &config.vibration))),
         ("s2", Box::new(|| detector(FrictionDetector::default(), |config| &config.friction))),
         ("hebbian", Box::new(move || detector(network.clone(), |config| &config.hebbian))),
-        ("mlp", Box::new(|| detector(MlpDetector::default(), |_| &()))),
+        ("mlp", Box::new(|| detector(ShippedDetector::default(), |_| &()))),
         ("features", Box::new(features)),
         ("loudness", Box::new(|| judge(rivals::loudness()))),
         ("ratio", Box::new(|| judge(rivals::ratio()))),

@@ -223,7 +223,7 @@ impl Fingertip {
 /// A network from its snapshot. Fails if that is damaged.
 fn network(snapshot: &[u8]) -> anyhow::Result<HebbianDetector> {
     let mut network = HebbianDetector::default();
-    network.restore(snapshot).ok().context("a snapshot that is damaged")?;
+    network.restore(snapshot).then_some(()).context("a snapshot that is damaged")?;
     Ok(network)
 }
 

@@ -48,11 +48,9 @@ fn a_wearers_levels_are_those_of_the_calibration() {
     assert_eq!((weak.both, weak.hears), ([622, 420], [Some(150), None]));
     assert_eq!((weak.close_ratio, weak.turn), (-750, 1_940));
     assert_eq!(weak.active_uv.map(|own| own.map(level_of)), [[16_037, 15_912], [16_134, 16_010]]);
-    // A rest that wanders, and an opening that the other electrode just hears.
     let noisy = Sites::of(&F, &model([[15_600, 15_700], [17_600, 16_200], [15_900, 17_800], [450, 510]]));
     assert_eq!((noisy.begins, noisy.ends, noisy.fall), ([675, 728], [450, 500], [600, 571]));
     assert_eq!((noisy.both, noisy.hears), ([538, 450], [Some(250), Some(150)]));
-    // A rest above what is activity for everybody, and an electrode that falls with the other's contraction.
     let loud = Sites::of(&F, &model([[17_800, 15_700], [20_000, 17_700], [17_700, 19_800], [100, 100]]));
     assert_eq!(
         loud.active_uv.map(|own| own.map(level_of)),
@@ -84,7 +82,6 @@ fn electrodes_that_are_swapped_are_the_same_wearer() {
     }
 }
 
-/// What is averaged, and what was before.
 #[derive(Clone, Copy)]
 struct State {
     wish: Wish,
@@ -136,7 +133,6 @@ fn opening_begins_from_its_share_and_place_while_the_other_site_is_calm() {
         (State { since: [39, 1_000], mean: [0, 999, 480], ..opens }, false),
         (State { since: [39, 1_000], mean: [0, 1_000, 480], ..opens }, true),
         (State { since: [38, 1_000], mean: [0, 1_000, 480], ..opens }, false),
-        // Tone that stays is no new wish.
         (State { trough: [0, 400], mean: [0, 799, 480], ..opens }, false),
         (State { trough: [0, 400], mean: [0, 800, 480], ..opens }, true),
     ] {
@@ -165,7 +161,6 @@ fn closing_begins_from_its_share_and_place_while_nothing_opens() {
         (State { mean: [480, 622, 480], ..closes }, false),
         (State { over: true, ..closes }, false),
         (State { blind: [true, false], ..closes }, false),
-        // Nothing is known of the opening site.
         (State { mean: [899, 0, 480], ..blind }, false),
         (State { mean: [900, 0, 480], ..blind }, true),
         (State { trough: [100, 0], mean: [499, 0, 480], ..closes }, false),
@@ -173,7 +168,6 @@ fn closing_begins_from_its_share_and_place_while_nothing_opens() {
     ] {
         let expected = if begins { Wish::Close } else { Wish::Rest };
         assert_eq!(wants(state), expected, "{:?}", state.mean);
-        // What saturates goes on opening.
         let expected = if state.over { Wish::Open } else { expected };
         let open =
             State { wish: Wish::Open, mean: [state.mean[0], state.mean[1].min(400), state.mean[2]], ..state };
@@ -239,7 +233,6 @@ fn crest_trough_and_activity_are_remembered() {
     }
 }
 
-/// What one slow frame of these levels, closing site first, leaves so long after other activity.
 fn read(levels: [i32; 2], since: i32, of: impl Fn(&mut [Electrode; 2])) -> Machine {
     let mut electrodes = levels.map(|level| Electrode { uv: Some(uv_of(level)), ..Electrode::default() });
     of(&mut electrodes);
@@ -258,16 +251,13 @@ fn what_is_above_all_that_was_calibrated_is_strong() {
     for (is_strong, machine) in [
         (true, read([15_600, 16_940], 1_000, none)),
         (false, read([15_600, 16_939], 1_000, none)),
-        // The closing site is calm, or stands still.
         (true, read([16_499, 16_940], 1_000, none)),
         (false, read([16_500, 16_940], 1_000, none)),
         (true, read([16_500, 16_940], 1_000, still)),
-        // By the ratio, unless the closing electrode says nothing of it.
         (true, read([16_758, 16_940], 1_000, still)),
         (false, read([16_759, 16_940], 1_000, still)),
         (true, read([16_759, 16_940], 1_000, doubted)),
         (true, read([16_759, 16_940], 1_000, blind)),
-        // Soon after other activity it takes more.
         (true, read([15_600, 16_940], 39, none)),
         (false, read([15_600, 17_209], 38, none)),
         (true, read([15_600, 17_210], 38, none)),

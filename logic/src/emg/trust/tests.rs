@@ -38,7 +38,6 @@ fn each_fault_has_its_name() {
         (3.0, |t| 400.0 + 5.0 * (TAU * 100.0 * t).sin(), Quality::Hum),
         (3.0, |t| 400.0 + 5.0 * (TAU * 50.0 * t).sin(), Quality::Hum),
         (3.0, |t| 100.0 + 700.0 * t, Quality::Creep),
-        // It climbs in steps that no muscle's are, and by too little to creep.
         (4.0, |t| 400.0 + 6.0 * (1.15 * t).floor(), Quality::Flat),
         (4.0, |t| 400.0 + 6.0 * (1.15 * t).floor() + 5.0 * (TAU * 100.0 * t).sin(), Quality::Hum),
         (1.0, |_| 3_000.0, Quality::LeadOff),

@@ -1,6 +1,7 @@
 //! A scene that the built tool serves, and ROS 2's side of the network.
 
 use std::io::{BufRead, BufReader};
+use std::path::Path;
 use std::process::{Child, Command, Stdio};
 
 use tempfile::TempDir;
@@ -16,9 +17,8 @@ pub struct Served {
 impl Served {
     /// Serves a scene: its name, or its text.
     pub fn start(scene: &str) -> Self {
-        let own = std::env::current_exe().unwrap();
-        let tool = own.ancestors().nth(2).unwrap().join("tenax-host");
-        assert!(tool.exists(), "build the tool first: `cargo tenax scenes`");
+        let tool = Path::new(env!("CARGO_MANIFEST_DIR")).join("../target/release/tenax-sim");
+        assert!(tool.exists(), "build the tool first: `cargo tenax run --list`");
         let folder = tempfile::tempdir().unwrap();
         let mut named = scene.to_owned();
         if scene.contains('\n') {

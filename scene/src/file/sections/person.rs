@@ -7,15 +7,11 @@ use toml::Spanned;
 
 use crate::file::quantity::{Duration, Instant, Millivolts, Newtons};
 
-/// What the wearer wants of the hand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Intent {
-    /// Flexor.
     Close,
-    /// Extensor.
     Open,
-    /// Both at once: co-contraction.
     Both,
 }
 
@@ -23,28 +19,21 @@ pub enum Intent {
 #[serde(deny_unknown_fields)]
 pub struct Muscle {
     pub at_s: Spanned<Instant>,
-    /// How long at most.
     pub for_s: Duration,
     pub intent: Intent,
-    /// How strongly: envelope above rest.
     pub level_mv: Millivolts,
-    /// They let go as soon as each finger presses this much.
     pub until_grip_n: Option<Newtons>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(try_from = "String")]
 pub enum CommandKind {
-    /// A behaviour begins; a turn is by `value` degrees.
     Begin(Behaviour),
     End,
     Zero,
-    /// The hand is closed with `duty_permille` for `for_s`.
     Close,
     Open,
-    /// Somebody at the hand presses the board's button: consent to what the line sends.
     Consent,
-    /// A setting is set to `value`, in its unit: `set-` and the setting's name.
     Set(SettingId),
 }
 
@@ -78,16 +67,12 @@ impl TryFrom<String> for CommandKind {
     }
 }
 
-/// A command over the serial line.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Command {
     pub at_s: Spanned<Instant>,
     pub kind: Spanned<CommandKind>,
-    /// Of a setting, in the unit that the kind names.
     pub value: Option<Spanned<i32>>,
-    /// Of a drive.
     pub duty_permille: Option<Spanned<u16>>,
-    /// Of a drive: how long the key is held.
     pub for_s: Option<Duration>,
 }

@@ -10,34 +10,22 @@ pub const PEAK_N: f64 = 1.7;
 /// Force at which figure 14 is back at its first value, N.
 pub const BACK_N: f64 = 6.0;
 
-/// How one head came out in the making.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Making {
-    /// Force at the peak, N.
     pub peak_n: f64,
-    /// Force at which the intensity is back at its first value, N.
     pub back_n: f64,
-    /// How far its phase bends off the power law, as a part of a half turn.
     pub bend: f64,
-    /// Voltage in the dark, mV: the "high initial offset".
     pub dark_mv: f64,
-    /// What the peak adds to it, mV.
     pub span_mv: f64,
-    /// Birefringence frozen into the layer, rad of phase.
     pub frozen_rad: f64,
 }
 
-/// What has changed since the head was made, on one day.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Day {
-    /// Light of the source, as a part of its first.
     pub source: f64,
-    /// How the source goes on drifting, as a part of its first, in a minute.
     pub source_per_min: f64,
     pub ambient_mv: f64,
-    /// What ageing of the epoxy adds to the frozen birefringence, rad.
     pub aged_rad: f64,
-    /// What ageing makes of the stress-optic coefficient, as a part.
     pub aged_optic: f64,
 }
 
@@ -94,7 +82,7 @@ impl Day {
     }
 }
 
-/// What the receiver's amplifier gives, mV, before it clips. Orientation and the share of shear in the principal stresses
+/// Output of the receiver's amplifier, mV, before it clips. Orientation and the share of shear in the principal stresses
 /// are equations 4 to 9; the phase under a normal force alone is the head's own curve.
 pub fn receiver_mv(layer: &Layer, making: &Making, day: &Day, t_s: f64, normal_n: f64, shear_n: f64) -> f64 {
     let normal_n = normal_n.max(0.0);
@@ -139,13 +127,5 @@ mod tests {
             (peak_mv - 400.0 - 2_200.0 / 1.36).abs() < 1.0 && (at_n - 1.29).abs() < 0.02,
             "{at_n} {peak_mv}"
         );
-    }
-
-    #[test]
-    fn heads_differ_by_seed_and_within_what_was_asked_for() {
-        let heads: Vec<Making> = (0..50).map(|seed| Making::drawn(seed.into(), 0.2)).collect();
-        assert!(heads.iter().all(|h| (h.peak_n / PEAK_N - 1.0).abs() <= 0.1 && h.bend.abs() <= 0.02));
-        assert!(heads.windows(2).all(|two| two[0] != two[1]));
-        assert!(heads.iter().all(|h| (h.phase_rad(h.back_n) - PI).abs() < 1e-9));
     }
 }

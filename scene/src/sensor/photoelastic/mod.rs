@@ -1,8 +1,7 @@
 //! A photoelastic head in the place of PVDF film 12 (Dubey 2006): one optical channel for slip and normal force.
 //!
-//! Under the metal strip the layer is a spring. What slides over the strip drags it along; where friction falls with speed
-//! the strip vibrates by itself ([`physics::stribeck`](crate::physics::stribeck)), its pull shears the layer, and the light
-//! flickers. Without the strip friction does not fall, and the light changes only where slip begins and ends.
+//! Under the metal strip the layer is a spring. Where friction falls with speed the strip vibrates by itself
+//! ([`physics::stribeck`](crate::physics::stribeck)), its pull shears the layer, and the light flickers.
 
 pub mod curve;
 pub mod optics;
@@ -18,13 +17,11 @@ use crate::random::{Noise, Seeds, Source};
 use crate::schedule::STEP_S;
 use tenax_hal_shim::channel::SCANS_PER_FRAME;
 
-/// The strip on its layer. Stiffness: a block of urethane of 9 mm x 5 mm x 3 mm in shear, E about 9 MPa. Mass (strip,
-/// layer and what of the finger moves with them) and damping are assumed: with them aluminium vibrates by itself up to 4.3
-/// mm/s under 1 N, and amplitude and frequency both rise with the rate, as the paper's figures 12 and 13 do.
+/// The strip on its layer. Stiffness: a block of urethane of 9 mm x 5 mm x 3 mm in shear, E about 9 MPa. Mass and damping are assumed:
+/// amplitude and frequency rise with the rate, as in figures 12 and 13.
 pub const HEAD_STRIP: Slider =
     Slider { mass_kg: 0.010, stiffness_n_per_m: 10_000.0, damping_ns_per_m: 4.0, friction: METAL };
 
-/// A head, on its day.
 #[derive(Debug)]
 pub struct Head {
     layer: Layer,
@@ -60,7 +57,6 @@ impl Head {
         head
     }
 
-    /// A head by itself, for a bench: nothing knocks at it.
     pub fn with(layer: Layer, making: Making, day: Day, slider: Slider, seeds: Seeds) -> Self {
         Self {
             layer,
@@ -77,7 +73,6 @@ impl Head {
         }
     }
 
-    /// The voltage at the pin after one scan that ends at `t_s`.
     pub fn step(&mut self, t_s: f64, touch: &Touch) -> f64 {
         let rings = self.knocks.iter().map(|knock| super::pvdf::ring_mv(knock, t_s, 0.0)).sum::<f64>();
         let normal_n = (self.share * touch.normal_n + rings * self.knock_mn_per_mv / 1e3).max(0.0);
@@ -95,14 +90,12 @@ impl Head {
     }
 }
 
-/// What slides over the strip. Without the strip, friction does not fall with speed.
 fn friction(parameters: &Photoelastic) -> Stribeck {
     let mu_d = parameters.mu_d.get();
     let mu_s = if parameters.strip { parameters.mu_s.get() } else { mu_d };
     Stribeck { mu_s: mu_s.max(mu_d), mu_d, speed_m_s: parameters.stribeck_mm_s.get() / 1e3 }
 }
 
-/// The strip and the layer under it, as they came out in the making.
 pub fn drawn_strip(seeds: Seeds, spread: f64) -> Slider {
     let mut noise = Noise::new(seeds.making, Source::HeadStrip);
     let mut near = |mean: f64| mean * noise.between(1.0 - spread, 1.0 + spread);
