@@ -3,6 +3,7 @@
 use serde_json::Value;
 use tenax_lab::chart::table::costs::Costs;
 use tenax_lab::chart::table::heard::Plan;
+use tenax_lab::chart::table::rivals::rows;
 use tenax_lab::chart::table::table;
 
 const fn plan(seed: u64) -> Plan {
@@ -50,4 +51,11 @@ fn every_row_has_the_keys_and_the_same_slips_and_its_intervals_bracket() {
     // Whoever adds a detector misses no slip more.
     assert!(recall("s1 or mlp") >= recall("s1").max(recall("mlp")));
     assert!(recall("the hand: any of four") >= recall("s1 or hebbian"));
+}
+
+#[test]
+fn every_part_of_a_row_has_a_processor_time() {
+    let costs = Costs::measured().unwrap();
+    println!("ns a frame: {:.1?}", costs.0);
+    assert!(rows().iter().all(|row| costs.of(row.parts).is_some_and(|ns| ns > 0.0)));
 }
