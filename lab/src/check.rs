@@ -1,29 +1,40 @@
-//! Every promise of docs/results.md as a bar: what is promised, what was measured, whether it holds.
+//! Every promise of docs/results.md as a bar: promise, measured value, limit, verdict.
 
-pub mod agreement;
 pub mod array;
 pub mod default_scene;
 pub mod learn;
 pub mod mistakes;
+pub mod people;
 pub mod recordings;
-pub mod side_by_side;
 pub mod wearer;
 
 use std::fmt::{self, Display};
-
 
 /// Whether a promise holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
     Pass,
     Fail,
-    /// It could not be measured here.
+    /// Not measurable here.
     Skipped,
-    /// It says as much about the machine and its load as about the project, so nothing is kept or broken by it.
+    /// Measured without a limit.
     Noted,
+    /// A wall clock's figure, which depends on the machine: printed, not written to docs/results.md.
+    Clock,
 }
 
-/// A goal that is not reached yet, and what is held until then.
+impl Verdict {
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Pass => "kept",
+            Self::Fail => "NOT KEPT",
+            Self::Skipped => "skipped",
+            Self::Noted | Self::Clock => "noted",
+        }
+    }
+}
+
+/// A goal that is not reached yet, and the limit until then, in one unit.
 #[derive(Clone, Copy, Debug)]
 pub struct Goal {
     /// Quantity and unit.
@@ -33,61 +44,86 @@ pub struct Goal {
     pub held: f64,
 }
 
-impl Goal {
-    /// More is better where the goal is above what is held.
-    fn is_met(self, value: f64, bar: f64) -> bool {
-        if self.held > self.goal { value <= bar } else { value >= bar }
-    }
-}
-
 /// One promise, measured.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Bar {
     pub promise: String,
-    /// What was measured.
-    pub figure: String,
+    pub measured: String,
+    /// Empty where there is none.
+    pub limit: String,
     pub verdict: Verdict,
 }
 
 impl Bar {
-    /// A promise that was measured.
-    pub fn new(promise: impl Into<String>, figure: impl Into<String>, holds: bool) -> Self {
-        Self {
-            promise: promise.into(),
-            figure: figure.into(),
-            verdict: if holds { Verdict::Pass } else { Verdict::Fail },
-        }
+    pub fn new(
+        promise: impl Into<String>,
+        measured: impl Into<String>,
+        limit: impl Into<String>,
+        holds: bool,
+    ) -> Self {
+        let verdict = if holds { Verdict::Pass } else { Verdict::Fail };
+        Self { promise: promise.into(), measured: measured.into(), limit: limit.into(), verdict }
     }
 
-    /// What is held of a goal that is not reached yet, its value and what it was measured by.
-    pub fn short_of(goal: Goal, value: f64, figure: impl Display) -> Self {
-        let reached = if goal.is_met(value, goal.goal) { "the goal is reached" } else { "short of the goal" };
-        Self::new(
-            format!("{}: held {}, goal {}", goal.what, goal.held, goal.goal),
-            format!("{value:.3}, {reached}; {figure}"),
-            goal.is_met(value, goal.held),
-        )
+    /// The limit of a goal that is not reached yet, the value, and what it was measured by. More is better where the goal is above
+    /// the limit.
+    pub fn short_of(Goal { what, goal, held }: Goal, value: f64, by: impl Display) -> Self {
+        let holds = if held > goal { value <= held } else { value >= held };
+        Self::new(what, format!("{value:.3}; {by}"), format!("{held}, goal {goal}"), holds)
     }
 
-    /// A figure that is told and not judged, such as a wall clock's.
-    pub fn noted(what: impl Into<String>, figure: impl Into<String>) -> Self {
-        Self { promise: what.into(), figure: figure.into(), verdict: Verdict::Noted }
-    }
-
-    /// A promise that cannot be measured here.
-    pub fn skipped(promise: impl Into<String>, why: impl Into<String>) -> Self {
-        Self { promise: promise.into(), figure: why.into(), verdict: Verdict::Skipped }
+    pub fn unjudged(promise: impl Into<String>, measured: impl Into<String>, verdict: Verdict) -> Self {
+        Self { verdict, ..Self::new(promise, measured, "", true) }
     }
 }
 
 impl Display for Bar {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let verdict = match self.verdict {
-            Verdict::Pass => "PASS",
-            Verdict::Fail => "FAIL",
-            Verdict::Skipped => "skipped",
-            Verdict::Noted => "noted",
-        };
-        write!(f, "{verdict:<8}{}: {}", self.promise, self.figure)
+        write!(f, "{:<10}{}: {}", self.verdict.name(), self.promise, self.measured)?;
+        if self.limit.is_empty() { Ok(()) } else { write!(f, "; limit {}", self.limit) }
+    }
+}
+
+/// Bars that are measured together, beside other groups.
+pub type Group<'a> = Box<dyn Fn() -> anyhow::Result<Vec<Bar>> + Sync + Send + 'a>;
+
+/// docs/results.md: the same bytes for the same commit.
+pub fn page(bars: &[Bar]) -> String {
+    let mut text = String::from(
+        "# Results\n\nWritten by `cargo tenax check --write`. Each promise of the project, measured: scenes with seed 1, `learn` with seed 1 and \
+         20 fingertips, the array on a data set of seed 4, recordings with seed 1. No real board was measured.\n\n\
+         | promise | measured | limit | verdict |\n|---|---|---|---|\n",
+    );
+    for Bar { promise, measured, limit, verdict } in bars.iter().filter(|bar| bar.verdict != Verdict::Clock) {
+        let cell = |text: &str| text.replace('|', "\\|");
+        text +=
+            &format!("| {} | {} | {} | {} |\n", cell(promise), cell(measured), cell(limit), verdict.name());
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_limit_is_an_upper_one_where_the_goal_is_below_it() {
+        let of = |goal, held, value| Bar::short_of(Goal { what: "x", goal, held }, value, "y").verdict;
+        assert_eq!([0.5, 1.0, 1.5].map(|x| of(0.0, 1.0, x)), [Verdict::Pass, Verdict::Pass, Verdict::Fail]);
+        assert_eq!([0.5, 0.7, 1.0].map(|x| of(0.95, 0.7, x)), [Verdict::Fail, Verdict::Pass, Verdict::Pass]);
+    }
+
+    #[test]
+    fn the_page_has_every_line_but_those_of_the_clock() {
+        let bars = [
+            Bar::new("a | b", "1 mm", "2 mm", true),
+            Bar::unjudged("speed", "3 s", Verdict::Clock),
+            Bar::new("c", "4", "3", false),
+        ];
+        let page = page(&bars);
+        assert!(
+            page.ends_with("|---|---|---|---|\n| a \\| b | 1 mm | 2 mm | kept |\n| c | 4 | 3 | NOT KEPT |\n"),
+            "{page}"
+        );
     }
 }

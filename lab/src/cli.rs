@@ -1,20 +1,20 @@
 //! The command line, a file a subcommand.
 
-mod balance;
 mod chart;
 mod check;
 mod dataset;
 mod evaluate;
 mod learn;
-mod people;
 mod train;
-mod train_network;
 mod vision;
 
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use anyhow::Context;
 use clap::{Parser, Subcommand};
-use tenax_frames::tool::exit;
+use tenax_frames::tool::{exit, format::Format, out, workspace};
+use tenax_sim::session::Board;
 
 /// The papers' studies, and every promise measured.
 #[derive(Debug, Parser)]
@@ -26,19 +26,12 @@ struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// Measure every promise of the project, one line each; fails if one is not kept
     Check(check::Args),
-    /// Teach the Hebbian network slip with a camera, and score it
     Learn(learn::Args),
-    /// Make a labelled data set of the normal-force array
     Dataset(dataset::Args),
-    /// Train the force array's slip detector from labelled recordings
     Train(train::Args),
-    /// Score the array's network on held-out data, or the whole hand in the paper's tasks
     Evaluate(evaluate::Args),
-    /// Draw the charts behind a page of docs/
     Chart(chart::Args),
-    /// Follow skin and object with a camera behind a clear skin, or calibrate its force
     Vision(vision::Args),
 }
 
@@ -53,6 +46,32 @@ pub fn main() -> ExitCode {
         Command::Chart(args) => chart::main(&args),
         Command::Vision(args) => vision::main(&args),
     })
+}
+
+/// Recorded envelopes of people: the arguments of `evaluate emg` and `train emg`.
+#[derive(Debug, clap::Args)]
+struct People {
+    /// Folder of personP_dayD_postureQ.csv: t_s, ecu, edc, fcr, fcu (32767 is 2.8 V), label (1 rest, 3 close, 4 open)
+    #[arg(long, value_name = "FOLDER")]
+    recordings: PathBuf,
+    /// Seed of the random faults, or of the search
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// How to print the report
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    report: Format,
+}
+
+/// The host's build of the logic, or the emulated board with the image, which is built. Fails if it cannot be built.
+fn board(host: bool) -> anyhow::Result<Board> {
+    if host { Ok(Board::Host) } else { Board::emulated(&workspace::root()?) }
+}
+
+/// Writes a file and tells its path on standard error.
+fn write(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
+    std::fs::write(path, bytes).with_context(|| format!("cannot write {}", path.display()))?;
+    out::note!("  {:<14}{}", "written", path.display());
+    Ok(())
 }
 
 #[cfg(test)]

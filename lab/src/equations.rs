@@ -1,4 +1,4 @@
-//! Normal equations of least squares, for few unknowns as for a hundred.
+//! Least squares and logistic regression, for few unknowns as for a hundred.
 
 /// `matrix x = right`. The matrix is symmetric and positive definite; its lower half is kept.
 #[derive(Clone, Debug)]
@@ -23,7 +23,6 @@ impl Equations {
         }
     }
 
-    /// The same for one unknown alone: a ridge.
     pub fn add_to(&mut self, unknown: usize, weight: f64, pull: f64) {
         self.matrix[unknown][unknown] += weight;
         self.right[unknown] += pull;
@@ -49,6 +48,37 @@ impl Equations {
         right
     }
 }
+
+/// Weights and bias of a logistic regression by Newton's method. `rows` writes a row's factors, and tells whether it is of the positive
+/// class and how much it counts; `ridge` is half the penalty of a squared weight.
+pub fn logistic(
+    unknowns: usize,
+    rows: usize,
+    ridge: f64,
+    row: impl Fn(usize, &mut [f64]) -> (bool, f64),
+) -> (Vec<f64>, f64) {
+    let (mut weights, mut factors) = (vec![0.0; unknowns + 1], vec![1.0; unknowns + 1]);
+    for _ in 0..ROUNDS {
+        let mut equations = Equations::new(unknowns + 1);
+        for n in 0..rows {
+            let (positive, counts) = row(n, &mut factors[..unknowns]);
+            let logit: f64 = factors.iter().zip(&weights).map(|(x, weight)| x * weight).sum();
+            let p = 1.0 / (1.0 + (-logit).exp());
+            equations.add(
+                &factors,
+                counts * (p * (1.0 - p)).max(1e-6),
+                counts * (f64::from(u8::from(positive)) - p),
+            );
+        }
+        (0..unknowns).for_each(|n| equations.add_to(n, ridge, -ridge * weights[n]));
+        equations.add_to(unknowns, 1e-9, 0.0);
+        weights.iter_mut().zip(equations.solve()).for_each(|(weight, step)| *weight += step);
+    }
+    let bias = weights.pop().unwrap_or_default();
+    (weights, bias)
+}
+
+const ROUNDS: usize = 8;
 
 #[cfg(test)]
 mod tests {

@@ -1,20 +1,18 @@
-//! `tenax evaluate`: the shipped network of the force array on recordings that it never saw, step by step and slip by
-//! slip; and with the hand around it, in the paper's two tasks and in the scenes where it has to fail.
+//! `tenax evaluate`: the force array's network on recordings that it never saw, step by step and slip by slip; the whole hand in the
+//! paper's two tasks; and intent recognition on people.
 
-pub mod draws;
 pub mod emg;
 pub mod fit;
 pub mod online;
-pub mod ran;
 pub mod report;
 pub mod roc;
 
 use tenax_sim::labelled::{Part, Recording};
 
-/// The recordings to be judged by: those that their file calls test, or all if it says nothing of the kind.
-pub fn test_split(recordings: Vec<Recording>) -> Vec<Recording> {
-    if recordings.iter().all(|recording| recording.part.is_none()) {
-        return recordings;
+/// The test part, or all recordings where the file names no parts.
+pub fn test_split(mut recordings: Vec<Recording>) -> Vec<Recording> {
+    if recordings.iter().any(|recording| recording.part.is_some()) {
+        recordings.retain(|recording| recording.part == Some(Part::Test));
     }
-    recordings.into_iter().filter(|recording| recording.part == Some(Part::Test)).collect()
+    recordings
 }

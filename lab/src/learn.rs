@@ -5,7 +5,7 @@
 //! the hand moves half a millisecond later, and no code is quite what it would have been. So the two are compared by giving
 //! the host's logic the image's own codes, and each command in the tick in which the image took it ([`Agreement`]).
 //!
-//! What the same lessons teach on the host is then tried there: in an hour of [`holding`], in a lift and a pour with the
+//! The fingertip that learned on the host is then tried there: in an hour of [`holding`], in a lift and a pour with the
 //! [`reflex`], and on fingers made by chance.
 
 pub mod bench;
@@ -35,29 +35,22 @@ use trial::{Setup, Trial, Word};
 
 /// Trials of a lesson (Tada 2006, section III-C).
 pub const LESSONS: u64 = 7;
-/// How long a trial is that ends with the slip up, s from the lift on.
+/// Duration of a trial that ends with the slip up, s from the lift on.
 const SLIP_UP_S: f64 = 1.5;
 /// Lifts of each finger made by chance with more force than the object needs.
 const SAFE_LIFTS: u64 = 5;
 /// Held-out trials of each finger made by chance.
 const TRIALS_OF_OTHERS: u64 = 10;
 
-/// What is tried.
 #[derive(Clone, Debug)]
 pub struct Options {
-    /// Seed of everything.
     pub seed: u64,
     pub trials: u64,
-    /// Minutes of holding.
     pub minutes: u64,
     /// Lifts, and pours, with the reflex.
     pub lifts: u64,
     /// Fingers made by chance.
     pub fingertips: u64,
-    /// Whether their films lie in directions of their own, as the paper's do.
-    pub turned_films: bool,
-    /// Whether their controls are tried, too.
-    pub controls: bool,
 }
 
 impl Default for Options {
@@ -69,8 +62,6 @@ impl Default for Options {
             minutes: 200,
             lifts: 20,
             fingertips: 20,
-            turned_films: false,
-            controls: true,
         }
     }
 }
@@ -78,26 +69,20 @@ impl Default for Options {
 #[derive(Clone, Debug)]
 pub struct Outcome {
     pub options: Options,
-    /// Who ran the trials.
     pub board: &'static str,
     /// Whether the board said what the host's logic says to the same codes and commands, tick for tick. None if the host
     /// ran the trials.
     pub agreement: Option<Agreement>,
     /// A trial of the finger before it learned: the largest output, 128 would be 1.
     pub untaught: u8,
-    pub lessons: Vec<Trial>,
     pub trials: Vec<Trial>,
     pub score: Score,
     /// The score of the same trials with equal weights in place of learned ones, on the host.
     pub equal: Score,
     pub holding: Holding,
-    /// Lifts with the reflex.
     pub lifts: Vec<Three>,
     pub pours: Vec<Three>,
-    /// The other fingers.
     pub others: Vec<Other>,
-    /// What the receptors felt in the last three lessons.
-    pub felt: Vec<figures::Felt>,
 }
 
 /// Told what is being done, and how much of it is over, 0 to 1.
@@ -110,8 +95,12 @@ pub fn run(options: &Options, board: &Board, progress: Progress) -> anyhow::Resu
     let silent = untaught.trial(Setup::new(&finger, held_out(options.seed, 0), false)?);
     let loudest = silent.outputs.iter().flatten().map(|output| output.unsigned_abs()).max();
 
-    let (learned, lessons, felt) = lessons_on_host(&finger, options, progress)?;
-    let equal = learned.controlled(Some(Control::EqualWeights))?;
+    let mut learned = Bench::default();
+    for n in 0..LESSONS {
+        learned.trial(Setup::new(&finger, lesson(options.seed, n), true)?);
+        progress("learning", n as f64 / LESSONS as f64);
+    }
+    let equal = learned.controlled(Control::EqualWeights)?;
     let equal = Score::of(&trials_on_host(&finger, equal, options, progress)?);
     let (trials, agreement) = if matches!(board, Board::Host) {
         (trials_on_host(&finger, learned.clone(), options, progress)?, None)
@@ -143,34 +132,12 @@ pub fn run(options: &Options, board: &Board, progress: Progress) -> anyhow::Resu
         untaught: loudest.unwrap_or(0),
         score: Score::of(&trials),
         equal,
-        lessons,
         trials,
         holding,
         lifts,
         pours,
         others,
-        felt,
     })
-}
-
-/// A finger that has learned, on the host; its lessons, and what it felt in the last three.
-type Learned = (Bench, Vec<Trial>, Vec<figures::Felt>);
-
-fn lessons_on_host(finger: &Finger, options: &Options, progress: Progress) -> anyhow::Result<Learned> {
-    let mut bench = Bench::default();
-    let (mut lessons, mut felt) = (Vec::new(), Vec::new());
-    for n in 0..LESSONS {
-        let setup = Setup::new(finger, lesson(options.seed, n), true)?;
-        if n + 3 >= LESSONS {
-            let (trial, receptors) = figures::Felt::record(&mut bench, setup);
-            lessons.push(trial);
-            felt.push(receptors);
-        } else {
-            lessons.push(bench.trial(setup));
-        }
-        progress("learning", n as f64 / LESSONS as f64);
-    }
-    Ok((bench, lessons, felt))
 }
 
 fn trials_on_host(
@@ -211,43 +178,19 @@ fn on_board(
 /// A finger made by chance.
 #[derive(Clone, Debug, Default)]
 pub struct Other {
-    /// What sliding keeps of its static friction.
     pub ratio: f64,
-    /// Its held-out trials.
     pub score: Score,
-    /// The same, each from what the lessons left and until the slip up: as the controls are tried.
-    pub apart: Score,
-    /// The same of each control, in the order of [`Control::ALL`].
-    pub controls: [Score; Control::ALL.len()],
     /// Lifts with more force than the object needs.
     pub safe: Safe,
 }
 
-/// The same lessons, and some held-out trials.
 fn other(options: &Options, n: u64) -> anyhow::Result<Other> {
     let own = seed(options.seed, 6, n);
-    let mut finger = Finger::random(own);
-    if options.turned_films {
-        finger = finger.with(("pvdf.film_directions", 1.0));
-    }
+    let finger = Finger::random(own);
     let mut bench = Bench::default();
     for n in 0..LESSONS {
         bench.trial(Setup::new(&finger, lesson(own, n), true)?);
     }
-    let apart = |bench: &Bench| -> anyhow::Result<Score> {
-        let mut trials = Vec::new();
-        for n in 0..TRIALS_OF_OTHERS {
-            // Each from the end of the lessons: a trial that is cut short is no beginning for the next.
-            let setup = Setup::new(&finger, held_out(own, n), false)?;
-            trials.push(bench.clone().trial_for(SLIP_UP_S, setup));
-        }
-        Ok(Score::of(&trials))
-    };
-    let mut controls: [Score; Control::ALL.len()] = Default::default();
-    for (score, control) in controls.iter_mut().zip(Control::ALL).filter(|_| options.controls) {
-        *score = apart(&bench.controlled(Some(control))?)?;
-    }
-    let learned_apart = if options.controls { apart(&bench.controlled(None)?)? } else { Score::default() };
     let mut safe = Safe::default();
     for n in 0..SAFE_LIFTS {
         let setup = Setup::held(&finger, seed(own, 7, n))?;
@@ -266,7 +209,7 @@ fn other(options: &Options, n: u64) -> anyhow::Result<Other> {
         trials.push(bench.trial(Setup::new(&finger, held_out(own, n), false)?));
     }
     let score = Score::of(&trials);
-    Ok(Other { ratio: finger.ratio(), score, apart: learned_apart, controls, safe })
+    Ok(Other { ratio: finger.ratio(), score, safe })
 }
 
 fn lesson(all: u64, n: u64) -> u64 {

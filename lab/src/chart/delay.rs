@@ -1,14 +1,14 @@
 //! The second half of `tenax chart front`: decision delay by stiffness by gain, where the object is lost and where the loop swings.
 
 use rayon::prelude::*;
-use tenax_sim::board::simulated;
-use tenax_sim::jobs::Jobs;
-use tenax_sim::report::fate::Fate;
 use tenax_hal_shim::wire::{Event, EventKind};
 use tenax_hal_shim::words::GripMode;
-use tenax_sim::plot::figure::colour;
-use tenax_sim::plot::sheet::{Axis, Cell, Mark, Panel, Series, Sheet, draw};
 use tenax_scene::{SceneFile, World};
+use tenax_sim::board::simulated;
+use tenax_sim::jobs::Jobs;
+use tenax_sim::plot::figure::colour;
+use tenax_sim::plot::sheet::{Axis, Cell, Mark, Panel, Series, Sheet};
+use tenax_sim::report::fate::Fate;
 
 use super::{Chart, Progress, csv};
 
@@ -18,7 +18,6 @@ const DELAYS_MS: [f64; 8] = [10.0, 20.0, 30.0, 45.0, 65.0, 90.0, 130.0, 190.0];
 const STIFFNESS_N_PER_MM: [f64; 8] = [0.3, 0.5, 0.9, 1.6, 3.0, 5.0, 9.0, 16.0];
 /// Lengths of the pulse that answers slip, ms: the gain, a third of the default, the default, and twice that.
 const PULSES_MS: [u32; 3] = [10, 30, 60];
-/// The default.
 const PULSE_MS: u32 = 30;
 /// The scenes' dead time, and their glass: where the defaults stand.
 const DEFAULT: (f64, f64) = (30.0, 3.0);
@@ -31,7 +30,7 @@ const GRAVITY_M_S2: f64 = 9.81;
 const MU_S: [f64; 2] = [0.5, 0.25];
 const MU_D: [f64; 2] = [0.44, 0.22];
 const PAD_MM: f64 = 18.0;
-/// What each finger holds the dry glass with, N: 1.35 times what it needs.
+/// Force of each finger on the dry glass, N: 1.35 times its need.
 const HELD_N: f64 = 1.35 * MASS_KG * GRAVITY_M_S2 / 2.0 / MU_S[0];
 const SPEED_MM_S: f64 = 120.0;
 const FORCE_N: f64 = 140.0;
@@ -169,7 +168,7 @@ pub fn map(progress: Progress) -> anyhow::Result<Chart> {
         panels,
         errors: Some((1e-3, 1.0)),
     };
-    Ok(Chart { name: "front-delay", svg: draw::svg(&sheet)?, csv })
+    Chart::new("front-delay", &sheet, csv)
 }
 
 fn panel(pulse_ms: u32, cells: &[Point]) -> Panel {

@@ -5,16 +5,14 @@ use std::path::Path;
 use tenax_sim::plot::figure::colour;
 use tenax_sim::plot::sheet::{Axis, Mark, Panel, Series, Sheet};
 
-use super::{Chart, Progress, csv};
+use super::{Chart, csv};
 use crate::evaluate::emg::curves::{self, Point};
 
 /// A rate of none is drawn here.
 const LEAST_PER_HOUR: f64 = 1.0;
 
-/// Plays everybody in a folder with the hand and with plain control, each asking for more and for less.
-/// Fails if nobody is there, or the chart cannot be drawn.
-pub fn chart(folder: &Path, progress: Progress) -> anyhow::Result<Chart> {
-    progress(0.0);
+/// Plays everybody in a folder with the hand and with plain control, each asking for more and for less. Fails if nobody is there.
+pub fn chart(folder: &Path) -> anyhow::Result<Chart> {
     let points = curves::curves(folder)?;
     let rows = points.iter().map(|point| {
         let words = [point.control, point.calibration].map(str::to_owned);

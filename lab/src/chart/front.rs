@@ -2,21 +2,20 @@
 
 use plotters::style::RGBColor;
 use rayon::prelude::*;
+use tenax_hal_shim::detector::{DetectorId, DetectorSet};
 use tenax_sim::board::simulated::Grips;
 use tenax_sim::jobs::Jobs;
-use tenax_sim::report::fate::Fate;
-use tenax_sim::session::{self, controls};
-use tenax_hal_shim::detector::{DetectorId, DetectorSet};
 use tenax_sim::plot::figure::colour;
 use tenax_sim::plot::sheet::{Axis, Mark, Panel, Series, Sheet};
+use tenax_sim::report::fate::Fate;
+use tenax_sim::session::{self, controls};
 
 use super::{Chart, Progress, csv};
 
-/// Every scene is run with these.
 const SEEDS: [u64; 2] = [1, 2];
 /// A lost object, and one that slid further, counts as this, mm: the pad's length.
 const LOST_MM: f64 = 18.0;
-/// What slid less is drawn here, mm.
+/// Least way in the chart, mm.
 const LEAST_MM: f64 = 0.01;
 /// Scenes with a panel of their own: a wet patch, a pour with the array, a pour, a toy, balls off the middle.
 const OWN: [&str; 5] = ["glass", "array-pour", "pour", "hold-toy", "steel-balls"];
@@ -90,7 +89,6 @@ fn in_every_grip(scene: &str, seed: u64) -> anyhow::Result<Vec<Run>> {
     Ok(runs.map(|(grip, fate)| Run { scene: scene.to_owned(), seed, grip, fate }).collect())
 }
 
-/// How a grip is drawn: a detector has its colour, alone it is a ring, all but it a cross.
 fn look(grip: &str) -> (RGBColor, Mark) {
     let of = |id: DetectorId| match id {
         DetectorId::S1 => colour::BLUE,

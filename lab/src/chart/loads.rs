@@ -1,13 +1,12 @@
 //! The chart of `tenax chart vision` on known loads: what is told of shear and normal force, each load left out in its turn, and
 //! why normal force is not told better: the same weight, set down again, spreads the skin by another amount.
 
-use std::collections::BTreeMap;
 use std::path::Path;
 
 use anyhow::Result;
 
 use super::{Chart, Progress, csv};
-use crate::vision::calibrate::{Sample, Skin};
+use crate::vision::calibrate::{Sample, Skin, by_load};
 use tenax_sim::plot::figure::colour;
 use tenax_sim::plot::sheet::{Axis, Mark, Panel, Series, Sheet};
 
@@ -25,15 +24,11 @@ struct Told {
 pub fn chart(table: &Path, progress: Progress) -> Result<Chart> {
     let skin = Skin::at_rest(table)?;
     let samples = skin.samples(table)?;
-    let mut by_load: BTreeMap<[i64; 4], Vec<usize>> = BTreeMap::new();
-    for (at, sample) in samples.iter().enumerate().filter(|(_, sample)| sample.mass_g > 0.0) {
-        let [x, y, z] = sample.force_n;
-        let key = [sample.mass_g, x, y, z].map(|value| (value * 1e4).round() as i64);
-        by_load.entry(key).or_default().push(at);
-    }
+    let mut by_load = by_load(&samples);
+    by_load.retain(|own| samples[own[0]].mass_g > 0.0);
     let count = by_load.len();
     let mut loads = Vec::new();
-    for (number, own) in by_load.values().enumerate() {
+    for (number, own) in by_load.iter().enumerate() {
         let others: Vec<Sample> =
             (0..samples.len()).filter(|at| !own.contains(at)).map(|at| samples[at].clone()).collect();
         let fitted = skin.fit(&others)?;
@@ -106,7 +101,6 @@ fn normal(loads: &[Told]) -> Panel {
     )
 }
 
-/// Where the block leans to, against what is wrong: no cosine, and nothing of the noise of a picture.
 fn direction(loads: &[Told]) -> Panel {
     let heavy = || loads.iter().filter(|load| load.truth_n[1] > 3.0);
     let leans = |load: &&Told| load.truth_n[0].hypot(load.truth_n[2]) > 0.1;
@@ -135,7 +129,6 @@ fn direction(loads: &[Told]) -> Panel {
     )
 }
 
-/// The same weight without tilt, set down twice.
 fn again(loads: &[Told]) -> Panel {
     let upright = loads.iter().filter(|load| load.truth_n[0].hypot(load.truth_n[2]) < 0.01);
     let tilted = loads.iter().filter(|load| load.truth_n[0].hypot(load.truth_n[2]) >= 0.01);

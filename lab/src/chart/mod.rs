@@ -8,12 +8,12 @@ pub mod photoelastic;
 pub mod table;
 pub mod vision;
 
-use tenax_sim::plot::sheet::{Sheet, draw};
+use tenax_sim::plot::sheet::Sheet;
+pub use tenax_sim::plot::sheet::draw::svg;
 
 /// A chart and the numbers in it.
 #[derive(Clone, Debug)]
 pub struct Chart {
-    /// Its file name, without extension.
     pub name: &'static str,
     pub svg: String,
     pub csv: String,
@@ -21,7 +21,7 @@ pub struct Chart {
 
 impl Chart {
     fn new(name: &'static str, sheet: &Sheet, csv: String) -> anyhow::Result<Self> {
-        Ok(Self { name, svg: draw::svg(sheet)?, csv })
+        Ok(Self { name, svg: svg(sheet)?, csv })
     }
 }
 

@@ -8,12 +8,12 @@ use tenax_scene::sensor::photoelastic::optics::Layer;
 
 use super::{Chart, Progress, csv};
 use crate::photoelastic::balance;
-use crate::photoelastic::force::{self, Point, Score, Session, Story};
+use crate::photoelastic::force::{self, Point, Score};
 use crate::photoelastic::rate::{self, Material, Rig, Seen};
 use crate::photoelastic::region::{self, Region};
+use tenax_frames::quantile::middle;
 use tenax_sim::plot::figure::colour;
 use tenax_sim::plot::sheet::{Axis, Mark, Panel, Series, Sheet};
-use tenax_frames::quantile::middle;
 
 /// Heads on whose days the rate is fitted, and their first days.
 const HEADS: [u64; 4] = [1, 2, 3, 4];
@@ -21,29 +21,23 @@ const HEADS: [u64; 4] = [1, 2, 3, 4];
 const VALIDATION: std::ops::Range<u64> = 2_001..2_061;
 /// Heads whose slowest visible slip is looked for.
 const FLOORS: usize = 20;
-/// Stories of each session.
 const STORIES: usize = 6;
-/// Slips of each day.
 const SLIPS: usize = 10;
 /// Rates of the curves, mm/s.
 const RATES_MM_S: [f64; 9] = [0.05, 0.1, 0.2, 0.4, 0.6, 1.0, 1.6, 2.3, 3.0];
 
-/// What it measures, for programs.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Report {
-    /// How well the force is followed where nothing shears.
     pub force: Score,
-    /// The same with the shear of a lift: none to half of the force.
+    /// With the shear of a lift: none to half of the force.
     pub force_sheared: Score,
-    /// How well the rate is told.
     pub rate: Rate,
-    /// How far the boundary of vibration is from theory, %.
+    /// Deviation of the boundary of vibration from theory, %.
     pub boundary_pct: f64,
     /// The slowest slip of aluminium that every head sees, mm/s.
     pub slip_floor_mm_s: f64,
 }
 
-/// Of the slip rate.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Rate {
     /// Median error on days that were not calibrated on, %.
@@ -69,7 +63,6 @@ pub fn chart(progress: Progress) -> anyhow::Result<(Chart, Report)> {
         boundary_pct: region.boundary_pct,
         slip_floor_mm_s,
     };
-    let (ramps, lift) = stories();
     let sheet = Sheet::new(
         "A photoelastic head: force from its light, slip from its flicker",
         format!(
@@ -80,9 +73,8 @@ pub fn chart(progress: Progress) -> anyhow::Result<(Chart, Report)> {
         2,
         vec![
             intensity(),
-            followed("ramps without shear, three of them turning at the peak", &ramps),
-            followed("grips, then lifts with a shear of 0.3 and 0.5 of the force", &lift),
-            by_shear(&lifts),
+            followed("ramps without shear", &runs[0]),
+            followed("ramps with the shear of a lift", &lifts[0]),
             against_rate("ac part, mean size", Axis::log("mV", 0.5, 100.0), &curves, |seen| {
                 seen.amplitude_mv
             }),
@@ -90,7 +82,7 @@ pub fn chart(progress: Progress) -> anyhow::Result<(Chart, Report)> {
             map(&region),
         ],
     );
-    let csv = table(&runs, &curves, &region)?;
+    let csv = table(&curves, &region)?;
     progress(1.0);
     Ok((Chart::new("photoelastic", &sheet, csv)?, report))
 }
@@ -110,59 +102,9 @@ fn rates(progress: Progress) -> (f64, f64) {
     [errors, others].map(|errors| middle(errors).unwrap_or(f64::NAN)).into()
 }
 
-/// What the mean head sees of each rate.
 fn curve(material: Material) -> Vec<Seen> {
     let slider = Slider { friction: material.friction(), ..HEAD_STRIP };
     RATES_MM_S.map(|rate| Rig::mean(slider, 1).slide(region::LOAD_N, rate, 0.8 + 0.1 / rate)).to_vec()
-}
-
-/// Two stories on one head: ramps that turn at the peak, and lifts.
-fn stories() -> (Vec<Point>, Vec<Point>) {
-    let mut session = Session::new(VALIDATION.start);
-    let peak_n = session.peak_n();
-    let targets = [
-        (5.5, 3.0),
-        (peak_n, 3.0),
-        (4.0, 2.0),
-        (0.6, 4.0),
-        (peak_n, 1.5),
-        (0.3, 3.0),
-        (3.0, 6.0),
-        (0.0, 6.0),
-    ];
-    let ramps = session.run(&Story { steps: targets.to_vec(), shears: Vec::new() });
-    session.rest();
-    let grips = [
-        (0.5, 2.0),
-        (0.5, 2.0),
-        (0.0, 2.0),
-        (2.3, 4.0),
-        (2.3, 4.0),
-        (0.3, 4.0),
-        (4.0, 4.0),
-        (4.0, 4.0),
-        (0.0, 4.0),
-    ];
-    let shears = vec![0.0, 0.5, 0.0, 0.0, 0.3, 0.3, 0.0, 0.5, 0.0];
-    (ramps, session.run(&Story { steps: grips.to_vec(), shears }))
-}
-
-/// Where the head says that it is certain: what it says, and by how much it is off, against the shear.
-fn by_shear(runs: &[Vec<Point>]) -> Panel {
-    let certain = || runs.iter().flatten().filter(|point| point.is_certain);
-    let some = || certain().step_by((certain().count() / 1_500).max(1));
-    let off = some().filter_map(|point| Some((point.shear, point.read_n? - point.true_n)));
-    let says = |sign: f64| some().map(move |point| (point.shear, sign * point.uncertainty_n));
-    Panel::new(
-        "certain: off by, and may be off by, against shear",
-        Axis::even("shear, of the force", 0.0, 0.5),
-        Axis::even("N", -0.3, 0.3),
-        vec![
-            Series::new("may be off by", colour::GREY, Mark::Dots, says(1.0)),
-            Series::new("or so", colour::GREY, Mark::Dots, says(-1.0)),
-            Series::new("off by", colour::BLUE, Mark::Dots, off),
-        ],
-    )
 }
 
 fn intensity() -> Panel {
@@ -240,30 +182,17 @@ fn map(region: &Region) -> Panel {
     )
 }
 
-/// Everything that was drawn and measured, one row each.
-fn table(runs: &[Vec<Point>], curves: &[(Material, Vec<Seen>)], region: &Region) -> anyhow::Result<String> {
-    let mut rows: Vec<[String; 4]> = Vec::new();
+/// Slips and boundary, one row each.
+fn table(curves: &[(Material, Vec<Seen>)], region: &Region) -> anyhow::Result<String> {
+    let mut rows: Vec<Vec<String>> = Vec::new();
     let row = |what: &str, which: String, x: f64, y: f64| {
-        [what.to_owned(), which, format!("{x:.5}"), format!("{y:.5}")]
+        vec![what.to_owned(), which, format!("{x:.5}"), format!("{y:.5}")]
     };
-    for seed in VALIDATION {
-        let session = Session::new(seed);
-        let drawn = serde_json::to_value((session.making(), session.day()))?;
-        for part in drawn.as_array().into_iter().flatten().filter_map(|part| part.as_object()) {
-            let numbers = part.iter().filter_map(|(key, value)| Some((key, value.as_f64()?)));
-            rows.extend(numbers.map(|(key, value)| row("drawn", key.clone(), seed as f64, value)));
-        }
-    }
-    for (n, run) in runs.iter().enumerate() {
-        let score = Score::of([run.as_slice()]);
-        rows.push(row("story_rms_pct_fs", n.to_string(), score.cycles as f64, score.rms_pct_fs));
-        rows.push(row("story_certain_part", n.to_string(), score.cycles as f64, score.certain_part));
-    }
-    for (material, seen) in curves {
-        for seen in seen {
-            rows.push(row("ac_mv", material.name().to_owned(), seen.rate_mm_s, seen.amplitude_mv));
-            rows.push(row("ac_hz", material.name().to_owned(), seen.rate_mm_s, seen.hz));
-        }
+    for (material, seen) in
+        curves.iter().flat_map(|(material, seen)| seen.iter().map(move |own| (material, own)))
+    {
+        rows.push(row("ac_mv", material.name().to_owned(), seen.rate_mm_s, seen.amplitude_mv));
+        rows.push(row("ac_hz", material.name().to_owned(), seen.rate_mm_s, seen.hz));
     }
     for (steepness, theory, measured) in &region.boundary {
         rows.push(row("boundary_mm_s", format!("{steepness:.3} s/m"), *theory, *measured));
@@ -272,57 +201,5 @@ fn table(runs: &[Vec<Point>], curves: &[(Material, Vec<Seen>)], region: &Region)
         let seen = f64::from(u8::from(point.seen));
         rows.push(row("seen", format!("{:.3} s/m", point.steepness_s_m), point.rate_mm_s, seen));
     }
-    csv("what,which,x,y", rows.into_iter().map(Vec::from))
-}
-
-/// A calibration: its weights and curve, and what is left between them. Fails if it cannot be drawn.
-pub fn residuals(calibration: &balance::Calibration) -> anyhow::Result<Chart> {
-    let weighed = &calibration.weighed;
-    let end_n = weighed.last().map_or(6.0, |last| last.force_n.ceil());
-    let high_mv = weighed.iter().map(|w| w.level_mv).fold(0.0, f64::max);
-    let most_mn = weighed.iter().map(|w| 1e3 * (w.read_n - w.force_n).abs()).fold(10.0, f64::max).ceil();
-    let force = || Axis::even("force, N", 0.0, end_n);
-    let off = |w: &balance::Weighed| 1e3 * (w.read_n - w.force_n);
-    let sheet = Sheet::new(
-        "Calibration of a photoelastic head from known weights",
-        format!("Residuals {:.2} % of full scale at most.", calibration.worst_percent()),
-        2,
-        vec![
-            Panel::new(
-                "light against force",
-                force(),
-                Axis::even("mV", 0.0, (high_mv / 500.0).ceil() * 500.0),
-                vec![
-                    Series::new(
-                        "known weights",
-                        colour::VERMILLION,
-                        Mark::Crosses,
-                        weighed.iter().map(|w| (w.force_n, w.level_mv)),
-                    ),
-                    Series::new(
-                        "calibrated curve",
-                        colour::BLUE,
-                        Mark::Line,
-                        weighed.iter().map(|w| (w.read_n, w.level_mv)),
-                    ),
-                ],
-            ),
-            Panel::new(
-                "residuals",
-                force(),
-                Axis::even("read less true, mN", -most_mn, most_mn),
-                vec![Series::new(
-                    "known weights",
-                    colour::VERMILLION,
-                    Mark::Crosses,
-                    weighed.iter().map(|w| (w.force_n, off(w))),
-                )],
-            ),
-        ],
-    );
-    let rows = weighed
-        .iter()
-        .map(|w| [w.force_n, w.level_mv, w.read_n].map(|number| format!("{number:.4}")).to_vec());
-    let csv = csv("force_n,level_mv,read_n", rows)?;
-    Chart::new("photoelastic-calibration", &sheet, csv)
+    csv("what,which,x,y", rows)
 }

@@ -2,8 +2,8 @@
 
 use anyhow::Result;
 use rayon::prelude::*;
-use tenax_sim::jobs::Jobs;
 use tenax_scene::picture::Stress;
+use tenax_sim::jobs::Jobs;
 
 use super::{Chart, Progress, csv};
 use crate::vision::scored::{self, Report};
@@ -66,10 +66,10 @@ const DIFFICULTIES: [Difficulty; 6] = [
 /// Shares that are drawn: name, value.
 fn shares(report: &Report) -> [(&'static str, Option<f64>); 4] {
     [
-        ("object seen while held", report.object_seen),
-        ("slip: recall", report.slip.recall),
-        ("said to slip falsely", report.slip.false_rate),
-        ("seen where there is none", report.object_false),
+        ("object seen while held", report.all.object_seen),
+        ("slip: recall", report.all.recall),
+        ("said to slip falsely", report.all.false_rate),
+        ("seen where there is none", report.all.object_false),
     ]
 }
 

@@ -1,87 +1,134 @@
-//! The default scene on a board: nothing lost, the glass kept, close to the bound, in budget.
+//! The default scene on a board: nothing lost, the glass kept, close to the bound, within the budgets of `budgets.toml`.
 
-use super::{Bar, agreement};
+use std::path::Path;
+
 use tenax_sim::board::Run;
-use tenax_sim::report::CYCLES_PER_INSTRUCTION;
-use tenax_sim::session::Outcome;
+use tenax_sim::board::agreement::Agreement;
+use tenax_sim::budgets::{Budgets, Line};
+use tenax_sim::image::size::{FLASH_BYTES, RAM_BYTES, Size};
+use tenax_sim::live::Use;
+use tenax_sim::report::{CYCLES_PER_INSTRUCTION, Report};
+use tenax_sim::session::{self, Board};
 
-/// Peak force may be so many times the bound's.
+use super::{Bar, Verdict};
+
+/// Peak force, times the bound's.
 const OF_BOUND: f64 = 1.5;
-/// It may slide by half the pad, mm. The bound, which knows when the glass gets wet, does not let it slide at all.
+/// Slid: half the pad, mm. The bound knows when the glass gets wet and does not let it slide at all.
 const SLID_MM: f64 = 9.0;
-/// The ticks may take so much of the core, per cent.
+/// Load of the core by the ticks, %.
 const LOAD_PERCENT: f64 = 20.0;
 
-/// The bars of one run of the default scene. On the emulated board everything of it was kept, in `run`.
-pub fn bars(outcome: &Outcome, run: Option<&Run>) -> Vec<Bar> {
+/// The bars of one run; those of the image where `image` is the emulated board's ELF file. Fails if the board cannot be run.
+pub fn bars(board: &Board, image: Option<&Path>) -> anyhow::Result<Vec<Bar>> {
+    let file = session::load_scene(session::DEFAULT_SCENE)?;
+    let mut run = Run::default();
+    let outcome = session::scene_served(&file, 1, board, Use::default(), &mut run, &mut |_| {})?;
+    run.summary = outcome.run.clone();
     let report = &outcome.report;
     let name = &report.scene;
     let mut bars = vec![
         Bar::new(
-            format!("{name}: 60 s, no overrun, no dropped control tick"),
+            format!("{name}: 60 s, nothing lost"),
             format!(
                 "{:.1} s, {} ticks, {} dropped, {} overruns",
                 report.virtual_s, report.ticks.count, report.ticks.dropped, report.overruns
             ),
+            "none",
             report.virtual_s >= 60.0 && report.ticks.dropped == 0 && report.overruns == 0,
         ),
         Bar::new(
             format!("{name}: kept"),
             match report.slip.dropped {
-                Some(true) => "it was dropped",
-                Some(false) => "it was not dropped",
-                None => "there was no object",
+                Some(true) => "dropped",
+                Some(false) => "not dropped",
+                None => "no object",
             },
+            "",
             report.slip.dropped == Some(false),
         ),
-        slid(name, report.slip.distance_mm, report.bound.distance_mm),
-        pressed(name, report.grip.peak_force_n, report.bound.peak_force_n),
+        beside_bound(
+            format!("{name}: slid, mm"),
+            [report.slip.distance_mm, report.bound.distance_mm],
+            ("half the pad, 9 mm", &|_| SLID_MM),
+        ),
+        beside_bound(
+            format!("{name}: peak force, N"),
+            [report.grip.peak_force_n, report.bound.peak_force_n],
+            ("1.5 times the bound's", &|bound| OF_BOUND * bound),
+        ),
     ];
-    let Some(run) = run else {
-        bars.push(Bar::skipped("emulated image: bit-exactness, load", "run on the host's logic"));
-        return bars;
+    let Some(image) = image else {
+        bars.push(Bar::unjudged("emulated image", "run on the host's logic", Verdict::Skipped));
+        return Ok(bars);
     };
-    bars.push(Bar::noted(
-        format!("{name}: how fast the board is emulated here"),
+    let agreement = Agreement::of(&run);
+    bars.push(Bar::unjudged(
+        format!("{name}: speed of the emulated board"),
         format!("{:.1} s virtual in {:.1} s", report.virtual_s, report.wall_s),
+        Verdict::Clock,
     ));
-    bars.push(agreement::bar(run));
-    bars.push(load(outcome));
-    bars
+    bars.push(Bar::new(
+        "image = host logic, bit for bit, every detector output and command",
+        agreement.to_string(),
+        "",
+        agreement.holds(),
+    ));
+    bars.push(load(report));
+    bars.extend(budgets(image, report)?.iter().map(budget));
+    Ok(bars)
 }
 
-fn slid(scene: &str, run: Option<f64>, bound: Option<f64>) -> Bar {
-    let promise = format!("{scene}: it slides by no more than half the pad, {SLID_MM} mm");
+/// A quantity and the bound's, against a limit that may depend on the bound's.
+fn beside_bound(
+    promise: String,
+    [run, bound]: [Option<f64>; 2],
+    (words, limit): (&str, &dyn Fn(f64) -> f64),
+) -> Bar {
     match (run, bound) {
         (Some(run), Some(bound)) => {
-            Bar::new(promise, format!("{run:.2} mm; the bound {bound:.2} mm"), run <= SLID_MM)
+            Bar::new(promise, format!("{run:.2}; the bound {bound:.2}"), words, run <= limit(bound))
         }
-        _ => Bar::new(promise, "nothing was held", false),
+        _ => Bar::new(promise, "nothing was held", words, false),
     }
 }
 
-fn pressed(scene: &str, run: Option<f64>, bound: Option<f64>) -> Bar {
-    let promise = format!("{scene}: peak force within {OF_BOUND} times the bound's");
-    match (run, bound) {
-        (Some(run), Some(bound)) => {
-            Bar::new(promise, format!("{run:.2} N against {bound:.2} N"), run <= OF_BOUND * bound)
-        }
-        _ => Bar::new(promise, "nothing was held", false),
-    }
-}
-
-fn load(outcome: &Outcome) -> Bar {
-    let promise = format!("ticks take under {LOAD_PERCENT} % of 100 MHz");
-    let ticks = &outcome.report.ticks;
+fn load(report: &Report) -> Bar {
+    let (promise, limit) = ("load of the 100 MHz core by the ticks", format!("{LOAD_PERCENT} %"));
+    let ticks = &report.ticks;
     let (Some(mean), Some(max), Some([low, high]), Some([core_low, core_high])) =
         (ticks.instructions_mean, ticks.instructions_max, ticks.load_percent, ticks.core_load_percent)
     else {
-        return Bar::new(promise, "no instructions were counted", false);
+        return Bar::new(promise, "no instructions were counted", limit, false);
     };
     let [few, many] = CYCLES_PER_INSTRUCTION;
-    let figure = format!(
+    let measured = format!(
         "{mean:.0} instructions a tick, {max} at worst: {low:.1} to {high:.1} % at {few:.0} to {many:.0} cycles each \
          (interrupts and telemetry included: {core_low:.1} to {core_high:.1} %)"
     );
-    Bar::new(promise, figure, high < LOAD_PERCENT)
+    Bar::new(promise, measured, limit, high < LOAD_PERCENT)
+}
+
+/// Every budget, beside the size of the image and the counts of a run. Fails if the image cannot be read.
+fn budgets(image: &Path, report: &Report) -> anyhow::Result<[Line; 6]> {
+    let budgets = Budgets::of_checkout()?;
+    let size = Size::read(image)?;
+    let bytes = |what, measured, budget, of| Line { what, unit: "bytes", measured, budget, of: Some(of) };
+    let instructions =
+        |what, measured, budget| Line { what, unit: "instructions", measured, budget, of: None };
+    let mean = |mean: Option<f64>| mean.map(|mean| mean.round() as u64);
+    let load = &report.load;
+    Ok([
+        bytes("flash", Some(size.flash), budgets.flash_bytes, FLASH_BYTES),
+        bytes("RAM, variables", Some(size.ram), budgets.ram_bytes, RAM_BYTES),
+        bytes("worst stack", report.stack_bytes, budgets.stack_bytes, RAM_BYTES - size.ram),
+        instructions("tick, mean", mean(load.tick_instructions_mean), budgets.tick_instructions_mean),
+        instructions("tick, worst", report.ticks.instructions_max, budgets.tick_instructions_max),
+        instructions("period, mean", mean(load.period_instructions_mean), budgets.period_instructions_mean),
+    ])
+}
+
+fn budget(line: &Line) -> Bar {
+    let measured = line.measured.map_or("not measured".to_owned(), |measured| measured.to_string());
+    Bar::new(format!("{}, {}", line.what, line.unit), measured, line.budget.to_string(), line.is_kept())
 }

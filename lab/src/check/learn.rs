@@ -1,98 +1,104 @@
 //! A fingertip that teaches itself slip: the bars of `tenax learn`, on the host's logic.
 
-use super::{Bar, Goal};
 use tenax_sim::session::Board;
+
+use super::{Bar, Goal, Verdict};
 use crate::learn::report::{Score, of_judges};
 use crate::learn::{self, LESSONS, Options};
 
-/// How much earlier than vision the network's first word must be on average, s: slip, or a warning of it (Tada 2006: 0.89 s less 0.73 s).
+/// Lead of the network's first word (slip, or a warning of it) over vision, s, mean (Tada 2006: 0.89 s less 0.73 s).
 const LEAD_S: f64 = 0.16;
-/// The part of vision's slip in the pour that may be left.
+/// Slip in the pour, as a part of vision's.
 const POUR_PART: f64 = 0.5;
-
-/// Minutes of holding, if not the three hours of the goal are asked for: two minutes of CI's fifteen would be theirs.
+/// Minutes of holding. The goal's three hours would take two of CI's fifteen minutes.
 const MINUTES: u64 = 40;
 
-/// The bars; `whole`: with all minutes of holding. Fails if a scene cannot be made.
-pub fn bars(whole: bool) -> anyhow::Result<Vec<Bar>> {
-    let defaults = Options { controls: false, ..Options::default() };
-    let options = if whole { defaults } else { Options { minutes: MINUTES, ..defaults } };
+/// Fails if a scene cannot be made.
+pub fn bars() -> anyhow::Result<Vec<Bar>> {
+    let options = Options { minutes: MINUTES, ..Options::default() };
     let outcome = learn::run(&options, &Board::Host, &|_, _| ())?;
     let (score, lead) = (&outcome.score, outcome.score.first.lead());
     let (slip, holding) = (&score.slip, &outcome.holding);
     let in_3_h = |alarms| 3.0 * holding.per_hour(alarms);
-    let [touch_s, vision_s, bound_s] =
-        of_judges(&outcome.lifts, |run| run.secured_s).map(|spread| spread.mean);
-    let [touch_mm, vision_mm, bound_mm] =
-        of_judges(&outcome.pours, |run| run.distance_mm).map(|spread| spread.mean);
+    let [touch_s, vision_s, bound_s] = of_judges(&outcome.lifts, |run| run.secured_s);
+    let [touch_mm, vision_mm, bound_mm] = of_judges(&outcome.pours, |run| run.distance_mm);
     let worst_s = outcome.worst_lead_s().unwrap_or(f64::NAN);
     let sum = |of: fn(&Score) -> u64| outcome.others.iter().map(|other| of(&other.score)).sum::<u64>();
     let (missed, trials) = (sum(|score| score.first.missed), sum(|score| score.trials));
     let wrong = sum(|score| score.direction_wrong);
+    let goal = |what, goal, held| Goal { what, goal, held };
     Ok(vec![
         Bar::new(
-            "learn: before learning the network says nothing",
-            format!("largest output {} of 128", outcome.untaught),
+            "learn: largest output before learning, of 128",
+            outcome.untaught.to_string(),
+            "0",
             outcome.untaught == 0,
         ),
         Bar::new(
             format!(
-                "learn: after {LESSONS} trials the network says slip or warns of it in all of {} others",
+                "learn: slip or a warning in every one of {} trials after {LESSONS} lessons",
                 score.trials
             ),
             format!("{} missed, {} with a false alarm", score.first.missed, score.first.false_alarms),
+            "none missed",
             score.first.missed == 0,
         ),
         Bar::new(
-            format!("learn: its first word is at least {LEAD_S} s before vision on average"),
-            format!("{:.3} s, sd {:.3}, worst {:.3}", lead.mean, lead.sd, lead.min),
+            "learn: lead of the first word over vision, s, mean",
+            format!("{:.3}, sd {:.3}, worst {:.3}", lead.mean, lead.sd, lead.min),
+            LEAD_S.to_string(),
             lead.mean >= LEAD_S,
         ),
-        Bar::noted(
-            "learn: slip alone, which the films say",
-            format!("{:.3} s before vision, {} of {} missed", slip.lead().mean, slip.missed, score.trials),
+        Bar::unjudged(
+            "learn: lead of slip alone, which the films report, s",
+            format!("{:.3}, {} of {} missed", slip.lead().mean, slip.missed, score.trials),
+            Verdict::Noted,
         ),
         Bar::new(
-            "learn: the direction is right in every trial, up and down",
+            "learn: directions, up and down",
             format!("{} of {} wrong", score.direction_wrong, 2 * score.trials),
+            "none wrong",
             score.direction_wrong == 0,
         ),
         Bar::short_of(
-            Goal { what: "learn: false alarms of slip, and of warnings, in three hours of holding", goal: 0.0, held: 1.0 },
+            goal("learn: false alarms of slip, and of warnings, in three hours of holding", 0.0, 1.0),
             in_3_h(holding.slip).max(in_3_h(holding.warning)),
             format_args!(
                 "slip {}, {} of them in micro slip, warnings {}, in {:.2} h with knocks of 50 Hz to 2 kHz, swings, motor noise",
                 holding.slip.count, holding.slip.in_micro_slip, holding.warning.count, holding.hours
             ),
         ),
-        Bar::noted(
-            "learn: what learning is worth over equal weights",
+        Bar::unjudged(
+            "learn: learned weights against equal ones, lead, s",
             format!(
-                "first word {:.3} s against {:.3} s with equal weights; slip {:.3} s against {:.3} s",
+                "first word {:.3} against {:.3}; slip {:.3} against {:.3}",
                 lead.mean,
                 outcome.equal.first.lead().mean,
                 slip.lead().mean,
                 outcome.equal.slip.lead().mean
             ),
+            Verdict::Noted,
         ),
         Bar::short_of(
-            Goal { what: "learn: secured so much earlier than by vision, s", goal: 0.3, held: 0.15 },
+            goal("learn: secured earlier than by vision, s", 0.3, 0.15),
             vision_s - touch_s,
             format_args!("{touch_s:.3} s against {vision_s:.3} s; bound {bound_s:.3} s"),
         ),
         Bar::new(
-            "learn: in the pour it slips at most half as far as by vision",
-            format!("{touch_mm:.2} mm against {vision_mm:.2} mm; bound {bound_mm:.2} mm"),
+            "learn: slid in the pour, mm",
+            format!("{touch_mm:.2} against {vision_mm:.2} by vision; bound {bound_mm:.2}"),
+            "half of vision's",
             touch_mm <= POUR_PART * vision_mm,
         ),
         Bar::short_of(
-            Goal { what: "learn: part of the slips of random fingertips in which no word is said", goal: 0.0, held: 0.02 },
+            goal("learn: part of the slips of random fingertips without a word", 0.0, 0.02),
             missed as f64 / trials as f64,
             format_args!("{missed} of {trials} missed on {} fingertips", outcome.others.len()),
         ),
         Bar::new(
-            format!("learn: on {} random fingertips every direction is right", outcome.others.len()),
-            format!("{wrong} directions wrong, worst mean lead {worst_s:.3} s"),
+            format!("learn: directions on {} random fingertips", outcome.others.len()),
+            format!("{wrong} wrong, worst mean lead {worst_s:.3} s"),
+            "none wrong",
             wrong == 0,
         ),
     ])

@@ -5,14 +5,13 @@
 //! the same; the others on the host alone: emulated, all of them take 4 minutes of a core.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use tenax_hal_shim::detector::DetectorId;
-
-use super::Bar;
-use super::side_by_side::Group;
 use tenax_sim::report::Report;
 use tenax_sim::session::{self, Board};
+
+use super::{Bar, Group, Verdict};
 
 /// On the rig nothing slides before this, s.
 const RIG_STILL_UNTIL_S: f64 = 1.5;
@@ -63,47 +62,43 @@ const RULES: [Rule; 7] = [
 ];
 
 /// A group for each recording in `folder` that a rule is for, and for each rule that has none.
-pub fn groups<'a>(folder: &Path, board: &'a Board) -> anyhow::Result<Vec<Group<'a, Vec<Bar>>>> {
+pub fn groups<'a>(folder: &Path, board: &'a Board) -> anyhow::Result<Vec<Group<'a>>> {
     let mut files: Vec<_> = fs::read_dir(folder)
         .map(|entries| entries.filter_map(|entry| Some(entry.ok()?.path())).collect())
         .unwrap_or_default();
     files.sort();
-    let mut groups = Vec::new();
+    let mut groups: Vec<Group<'a>> = Vec::new();
     for rule in &RULES {
         let pattern = glob::Pattern::new(rule.pattern)?;
+        let name_of = |file: &PathBuf| file.file_name().map(|name| name.to_string_lossy().into_owned());
+        let named = files.iter().filter_map(|file| Some((file.clone(), name_of(file)?)));
         let before = groups.len();
-        for file in &files {
-            let Some(name) = file.file_name().map(|name| name.to_string_lossy().into_owned()) else {
-                continue;
-            };
-            if pattern.matches(&name) {
-                let file = file.clone();
-                let emulated = (groups.len() == before).then_some(board);
-                groups.push(Group::new(name.clone(), move || {
-                    let judged = |board: &Board| -> anyhow::Result<_> {
-                        let outcome = session::replay(&file, None, 1, board, &mut |_| {})?;
-                        Ok((rule.judge)(&outcome.report))
-                    };
-                    let (figure, holds) = judged(&Board::Host)?;
-                    let promise = format!("{name}: {}", rule.promise);
-                    let Some(board) = emulated else {
-                        return Ok(vec![Bar::new(promise, format!("{figure}; on the host"), holds)]);
-                    };
-                    let same = judged(board)? == (figure.clone(), holds);
-                    let word = if same { "so on" } else { "NOT so on" };
-                    let figure = format!("{figure}; {word} the {} board", board.name());
-                    Ok(vec![Bar::new(promise, figure, holds && same)])
-                }));
-            }
+        for (file, name) in named.filter(|(_, name)| pattern.matches(name)) {
+            let emulated = (groups.len() == before).then_some(board);
+            groups.push(Box::new(move || Ok(vec![bar(rule, &file, &name, emulated)?])));
         }
         if groups.len() == before {
             let promise = format!("{}: {}", rule.pattern, rule.promise);
-            groups.push(Group::new(rule.pattern, move || {
-                Ok(vec![Bar::skipped(promise.clone(), "recording not present")])
-            }));
+            let skipped = Bar::unjudged(promise, "recording not present", Verdict::Skipped);
+            groups.push(Box::new(move || Ok(vec![skipped.clone()])));
         }
     }
     Ok(groups)
+}
+
+/// A recording on the host, and on the emulated board if there is one.
+fn bar(rule: &Rule, file: &Path, name: &str, emulated: Option<&Board>) -> anyhow::Result<Bar> {
+    let judged = |board: &Board| -> anyhow::Result<_> {
+        Ok((rule.judge)(&session::replay(file, None, 1, board, &mut |_| {})?.report))
+    };
+    let (figure, holds) = judged(&Board::Host)?;
+    let promise = format!("{name}: {}", rule.promise);
+    let Some(board) = emulated else {
+        return Ok(Bar::new(promise, format!("{figure}; on the host"), "", holds));
+    };
+    let same = judged(board)? == (figure.clone(), holds);
+    let word = if same { "the same" } else { "NOT the same" };
+    Ok(Bar::new(promise, format!("{figure}; {word} on the {} board", board.name()), "", holds && same))
 }
 
 fn rig(report: &Report) -> (String, bool) {

@@ -1,30 +1,40 @@
-//! `tenax train`: learns the force array's detector, in a package of its own that nothing else compiles; and fits the wearer's model.
+//! `tenax train`: learns the force array's detector; `train emg` fits the wearer's model.
 
-use std::io::IsTerminal;
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
-use anyhow::{Context, bail};
+use anyhow::{Context, ensure};
+use tenax_frames::tool::{folder, format::Format, out, progress::with_bar, workspace};
+use tenax_sim::array::network::{self, Network};
+use tenax_sim::array::{adapt, edges};
+use tenax_sim::labelled::{self, Part, library};
+use tenax_sim::scorer::Doing;
 
-use tenax_frames::tool::folder;
-use tenax_frames::tool::out;
-use super::people::People;
-use tenax_frames::tool::progress::with_bar;
-use tenax_frames::tool::workspace;
-use tenax_sim::labelled::{self, library};
-use crate::evaluate::fit;
+use super::People;
+use crate::dataset::{Plan, session::Sizes};
+use crate::evaluate::fit as emg_fit;
+use crate::train::export;
+use crate::train::features::{Recipe, Sequence, sequence};
+use crate::train::fit::{self, FEW_OBJECTS, SHIPPED};
+use crate::train::quantise::Quantised;
+use crate::train::report::{Data, Report, Validation};
+use crate::train::score::{Aim, Judged};
+use crate::train::table::Table;
 
 const EXAMPLES: &str = "\
 Examples:
   tenax train                                     from the data set of `tenax dataset`, which is made if it is not there
   tenax train --dataset mine.csv --recipe r.toml  from recordings of your own; docs/training.md says how to write a recipe
-  tenax train --dataset basic.csv --recipe biotac --test solids.csv
   tenax train emg --recordings FOLDER             the constants of intent recognition, leaving out each person once";
 
-/// Where `tenax dataset` writes if nothing else is said.
+/// The default file of `tenax dataset`.
 const DATASET: &str = "out/array_dataset.csv";
+/// Files of `--out` that `--ship` copies, and their places.
+const SHIPPED_TO: [(&str, &str); 2] =
+    [("network.rs", "logic/src/array/shipped.rs"), ("model-card.md", "docs/model-card.md")];
 
-/// Train the force array's slip detector from labelled recordings.
+/// Train the force array's slip detector from labelled recordings
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES, args_conflicts_with_subcommands = true)]
 pub struct Args {
@@ -36,30 +46,20 @@ pub struct Args {
     /// How to read them: a recipe file, or the name of one in recipes/ [default: by the file's name]
     #[arg(long, value_name = "FILE.toml|NAME")]
     recipe: Option<String>,
-    /// Further recordings (same recipe), used for scoring only; may be given more than once
-    #[arg(long, value_name = "FILE.csv")]
-    test: Vec<PathBuf>,
-    /// Where the network (Rust), its model card and the report are written
+    /// Folder for the network (Rust, JSON), its model card and the report
     #[arg(long, value_name = "DIR", default_value = "out/train")]
     out: PathBuf,
     /// Seed of the initial weights and of the training order
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// How to print the report: text or json
-    #[arg(long, default_value = "text", value_parser = ["text", "json"])]
-    report: String,
-    /// Also score on the test part of the data: once, for a network to be shipped
-    #[arg(long)]
-    open_test: bool,
-    /// Train on the paper's 76 features only, as a control
-    #[arg(long)]
-    paper_only: bool,
+    /// How to print the report
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    report: Format,
     /// Copy network and card to logic/src/array/shipped.rs and docs/
     #[arg(long)]
     ship: bool,
 }
 
-/// What is fitted instead of the force array's network.
 #[derive(Debug, clap::Subcommand)]
 enum What {
     /// Fit intent recognition to recorded EMG envelopes of people
@@ -78,92 +78,114 @@ struct EmgArgs {
     ship: bool,
 }
 
-fn emg(args: &EmgArgs) -> anyhow::Result<ExitCode> {
-    let People { recordings, seed, report: format } = &args.people;
-    let report = with_bar("fitting", |part| fit::fit(recordings, args.rounds, *seed, part))?;
-    out::unless_closed(format.show(&report))?;
-    if args.ship {
-        let to = workspace::root()?.join("logic/src/emg/fitted.rs");
-        std::fs::write(&to, &report.file).with_context(|| format!("cannot write {}", to.display()))?;
-        workspace::run(Command::new("rustfmt").args(["--edition", "2024"]).arg(&to))?;
-        out::note!("  {:<14}{}", "shipped", to.display());
+pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
+    if let Some(What::Emg(EmgArgs { people, rounds, ship })) = &args.what {
+        let report =
+            with_bar("fitting", |part| emg_fit::fit(&people.recordings, *rounds, people.seed, part))?;
+        out::unless_closed(people.report.show(&report))?;
+        if *ship {
+            shipped("logic/src/emg/fitted.rs", report.file.as_bytes())?;
+        }
+        return Ok(ExitCode::SUCCESS);
+    }
+    let folder = folder::made(&args.out)?;
+    let dataset = args.dataset.clone().unwrap_or_else(|| DATASET.into());
+    if args.dataset.is_none() && !dataset.exists() {
+        out::note!("no {DATASET} yet: making it");
+        super::dataset::make(Plan { seed: 1, sessions: Sizes::DEFAULT_TRAIN }, &dataset)?;
+    }
+    // The matrices are small: a second thread costs more than it saves, and with one nothing depends on which is first.
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
+    let files = pool.install(|| train(&dataset, args))?;
+    for (name, bytes) in &files {
+        super::write(&folder.join(name), bytes)?;
+    }
+    for (name, to) in SHIPPED_TO.into_iter().filter(|_| args.ship) {
+        shipped(to, &fs::read(folder.join(name))?)?;
     }
     Ok(ExitCode::SUCCESS)
 }
 
-/// What `--ship` puts where.
-const SHIPPED: [(&str, &str); 2] =
-    [("network.rs", "logic/src/array/shipped.rs"), ("model-card.md", "docs/model-card.md")];
-
-pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
-    if let Some(What::Emg(args)) = &args.what {
-        return emg(args);
+/// Writes a file of the project, and formats it if it is Rust.
+fn shipped(to: &str, bytes: &[u8]) -> anyhow::Result<()> {
+    let to = workspace::root()?.join(to);
+    super::write(&to, bytes)?;
+    if to.extension().is_some_and(|extension| extension == "rs") {
+        workspace::run(Command::new("rustfmt").args(["--edition", "2024"]).arg(&to))?;
     }
-    folder::made(&args.out)?;
-    let dataset = match &args.dataset {
-        Some(file) => file.clone(),
-        None => built_in()?,
+    Ok(())
+}
+
+/// Learns a file, prints the report, and gives the files to write. The test part is not looked at.
+fn train(path: &Path, args: &Args) -> anyhow::Result<[(&'static str, Vec<u8>); 4]> {
+    let name = path.display().to_string();
+    let recipe = library::choose(path, args.recipe.as_deref())?;
+    let features = Recipe::of(&recipe);
+    let bytes = fs::read(path).with_context(|| format!("{name}: cannot be read"))?;
+    let mut recordings = labelled::parse(bytes.as_slice(), &recipe, &name)?;
+    recordings.retain(|own| own.part != Some(Part::Test));
+    let sequences: Vec<Sequence> = recordings.iter().map(|own| sequence(own, &features)).collect();
+    ensure!(
+        sequences.iter().any(|sequence| !sequence.features.is_empty()),
+        "{name}: every recording is shorter than the windows, {} readings at 80 Hz",
+        features.ready_after()
+    );
+    let is_learned = |part| matches!(part, None | Some(Part::Train));
+    let learned: Vec<&Sequence> = sequences.iter().filter(|own| is_learned(own.part)).collect();
+    // What is disturbed has more noise than its array, and no slip to be learned in it.
+    let noise = recordings.iter().filter(|own| is_learned(own.part) && own.doing != Doing::Disturb);
+    let noise = noise.map(|own| adapt::noise_samples(&own.steps));
+    let noise = noise.fold([f64::INFINITY, 0.0], |[low, high], own| [low.min(own), own.max(high)]);
+    let file = path.file_name().map_or(name, |file| file.to_string_lossy().into_owned());
+    let data = Data::of(&file, &bytes, &learned);
+
+    let (aim, candidates) = if sequences.iter().any(|own| own.part.is_some()) {
+        (Aim::Pours, &SHIPPED[..])
+    } else {
+        (Aim::Balanced, &FEW_OBJECTS[..])
     };
-    let files = || std::iter::once(&dataset).chain(&args.test);
-    with_bar("reading", |_| files().try_for_each(|file| readable(file, &dataset, args.recipe.as_deref())))?;
-    let mut command = Command::new("cargo");
-    command.args(["run", "--release", "--ignore-rust-version", "--package", "tenax-train"]);
-    if !std::io::stderr().is_terminal() {
-        command.arg("--quiet");
+    let trained = with_bar("training", |progress| {
+        fit::fit(&sequences, candidates, aim, args.seed, &mut |part| progress(part))
+    })?;
+    let choice = trained.choice;
+    let quantised = Quantised::of(&trained.network, &Table::of(learned.iter().copied()));
+    let mut saved = export::saved(&quantised, &features, &choice, &data.sha256, noise);
+    let is_validated = |part, doing| part == Some(Part::Validation) && doing == Doing::Pour;
+    recordings.retain(|own| is_validated(own.part, own.doing));
+    let edges = if recordings.is_empty() || !Network::WINDOWS.contains(&saved.window) {
+        None
+    } else {
+        let network = Network::of(&saved)?;
+        let judged: Vec<_> = recordings.iter().map(|own| (own, network.confidences(&own.steps))).collect();
+        edges::choose(&judged)
+    };
+    if let Some(chosen) = &edges {
+        saved.edges = chosen.edges;
     }
-    command.arg("--manifest-path").arg(workspace::root()?.join("Cargo.toml")).arg("--");
-    command.arg("--dataset").arg(dataset);
-    if let Some(recipe) = &args.recipe {
-        command.args(["--recipe", recipe]);
-    }
-    for file in &args.test {
-        command.arg("--test").arg(file);
-    }
-    command.arg("--out").arg(&args.out).args(["--seed", &args.seed.to_string(), "--report", &args.report]);
-    for (is_set, flag) in [(args.open_test, "--open-test"), (args.paper_only, "--paper-only")] {
-        if is_set {
-            command.arg(flag);
-        }
-    }
-    // The matrices are small: a second thread costs more than it saves, and with one nothing depends on who was first.
-    command.env("RAYON_NUM_THREADS", "1");
-    out::note!("the first time, the training package is compiled: a few minutes");
-    let status = command.status()?;
-    if status.success() && args.ship {
-        ship(args)?;
-    }
-    // It has said what is wrong.
-    Ok(status.code().and_then(|code| u8::try_from(code).ok()).map_or(ExitCode::from(2), ExitCode::from))
-}
-
-/// Reads a file as the training will, so that a mistake in it is said before anything is compiled or learned.
-fn readable(file: &Path, dataset: &Path, recipe: Option<&str>) -> anyhow::Result<()> {
-    // Files to score on have the recipe of those to learn from.
-    labelled::read(file, &library::choose(dataset, recipe)?)?;
-    Ok(())
-}
-
-fn ship(args: &Args) -> anyhow::Result<()> {
-    for (name, to) in SHIPPED {
-        let to = workspace::root()?.join(to);
-        std::fs::copy(args.out.join(name), &to).with_context(|| format!("cannot write {}", to.display()))?;
-        out::note!("  {:<14}{}", "shipped", to.display());
-        if to.extension().is_some_and(|extension| extension == "rs") {
-            workspace::run(Command::new("rustfmt").args(["--edition", "2024"]).arg(&to))?;
-        }
-    }
-    Ok(())
-}
-
-/// The built-in data set, made if it is not there.
-fn built_in() -> anyhow::Result<PathBuf> {
-    let file = PathBuf::from(DATASET);
-    if !file.exists() {
-        out::note!("no {DATASET} yet: making it");
-        let made = Command::new(std::env::current_exe()?).args(["dataset", "--out", DATASET]).status()?;
-        if !made.success() {
-            bail!("`tenax dataset` failed; its message is above");
-        }
-    }
-    Ok(file)
+    let pours = || sequences.iter().filter(|own| is_validated(own.part, own.doing));
+    let float: Vec<_> = pours().map(|own| (own, fit::judge(&trained.network, &Table::of([own])))).collect();
+    let exported = pours()
+        .map(|own| Ok((own, Judged { logits: quantised.logits(own)?, slips: own.slips.clone() })))
+        .collect::<anyhow::Result<Vec<_>>>()?;
+    let report = Report {
+        seed: args.seed,
+        data,
+        features,
+        choice,
+        threshold_permille: export::permille(&choice),
+        edges,
+        float: Validation::of(&float, choice.threshold),
+        exported: Validation::of(&exported, choice.threshold),
+    };
+    out::unless_closed(args.report.show(&report))?;
+    let about = format!(
+        "Learned from `{}` (SHA-256 {}), seed {}; docs/model-card.md has its scores.",
+        report.data.file, report.data.sha256, report.seed
+    );
+    Ok([
+        ("network.rs", export::rust(&saved, &features, &about).into_bytes()),
+        (network::FILE, serde_json::to_vec(&saved)?),
+        ("model-card.md", report.card().into_bytes()),
+        ("report.json", serde_json::to_vec_pretty(&report)?),
+    ])
 }

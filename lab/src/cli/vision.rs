@@ -13,16 +13,15 @@ use tenax_hal_shim::wire::{Answer, Down, Event, EventKind, Up};
 use tenax_scene::picture::Stress;
 use tenax_vision::quality::Blind;
 
-use tenax_frames::tool::folder;
-use tenax_frames::tool::format::Format;
-use tenax_frames::tool::out;
-use tenax_frames::link::{Client, Outbox, Target};
 use crate::vision::calibrate::{self, Skin};
 use crate::vision::feed::Fault;
 use crate::vision::film::{self, Plan, Told};
 use crate::vision::source::Source;
-use crate::vision::told::Gains;
 use crate::vision::{scored, told};
+use tenax_frames::link::{Client, Outbox, Target};
+use tenax_frames::tool::folder;
+use tenax_frames::tool::format::Format;
+use tenax_frames::tool::out;
 
 /// The load from which on a hand holds something, mN.
 const HOLDS_MN: i32 = 200;
@@ -31,8 +30,7 @@ const EXAMPLES: &str = "\
 Examples:
   tenax vision                                         drawn sessions, scored against their truth
   tenax vision --report json                           for programs
-  tenax vision --video skin.m4v --out seen --overlay-every 50
-                                                       markers.csv, object.csv and overlays of a video
+  tenax vision --video skin.m4v --out seen             markers.csv and object.csv of a video
   tenax vision --device /dev/video0 --port /dev/ttyACM0
                                                        a board's behaviours feel with a camera; --teach: it learns slip from it
   tenax vision --device /dev/video0 --port /dev/ttyACM0 --begin hold
@@ -40,8 +38,7 @@ Examples:
   tenax vision --drawn --port tcp:127.0.0.1:7777 --fault lost
                                                        the same with a drawn camera, which is lost from 4 s to 6 s
   tenax vision calibrate --loads loads.csv --leave-out 584
-                                                       force from marker moves, tried on a mass that was left out
-  tenax vision calibrate --loads loads.csv --try-loads others.csv";
+                                                       force from marker moves, tried on a mass that was left out";
 
 /// Follow skin and object with a camera behind a clear skin.
 #[derive(Debug, clap::Args)]
@@ -52,9 +49,6 @@ pub struct Args {
     /// A video file, which ffmpeg decodes
     #[arg(long, value_name = "FILE", group = "source")]
     video: Option<PathBuf>,
-    /// A folder of pictures, in the order of their names
-    #[arg(long, value_name = "FOLDER", group = "source")]
-    folder: Option<PathBuf>,
     /// A camera of Video4Linux, such as /dev/video0
     #[arg(long, value_name = "DEVICE", group = "source")]
     device: Option<PathBuf>,
@@ -67,12 +61,9 @@ pub struct Args {
     /// Pictures a second if the source does not tell it, Hz [default: 30]
     #[arg(long, value_name = "HZ", requires = "source")]
     rate_hz: Option<f64>,
-    /// Folder for markers.csv, object.csv and overlays
+    /// Folder for markers.csv and object.csv
     #[arg(long, value_name = "FOLDER", requires = "source")]
     out: Option<PathBuf>,
-    /// Write an overlay of every Nth picture; 0: none
-    #[arg(long, value_name = "N", default_value_t = 0, requires = "out")]
-    overlay_every: usize,
     /// Send the camera's results to this board for its behaviours: /dev/ttyACM0 or tcp:127.0.0.1:7777
     #[arg(long, value_name = "PORT", requires = "source")]
     port: Option<Target>,
@@ -83,12 +74,6 @@ pub struct Args {
     /// Also send the teacher's codes; without --port only print them, one line a picture, for `tenax monitor --teach`
     #[arg(long, requires = "source")]
     teach: bool,
-    /// Normal force on the board for each px of a marker's motion, mN/px
-    #[arg(long, value_name = "MN", default_value_t = 100.0, requires = "port")]
-    normal_mn_per_px: f32,
-    /// Shear on the board for each px of a marker's motion along the finger, mN/px
-    #[arg(long, value_name = "MN", default_value_t = 40.0, requires = "port")]
-    shear_mn_per_px: f32,
     /// Seed of the drawn scenes
     #[arg(long, default_value_t = 1)]
     seed: u64,
@@ -115,9 +100,6 @@ struct CalibrateArgs {
     /// Mass in g that is left out and used to test the calibration; may be given more than once
     #[arg(long, value_name = "G")]
     leave_out: Vec<f64>,
-    /// Second table of loads on the same skin, to test the calibration
-    #[arg(long, value_name = "FILE.csv")]
-    try_loads: Option<PathBuf>,
     /// How to report
     #[arg(long, value_enum, default_value = "text")]
     report: Format,
@@ -127,10 +109,9 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     if let Some(Command::Calibrate(args)) = &args.command {
         return calibrated(args);
     }
-    let source = match (&args.video, &args.folder, &args.device) {
-        (Some(file), ..) => Source::Video(file.clone()),
-        (_, Some(folder), _) => Source::Folder(folder.clone()),
-        (.., Some(device)) => Source::Device(device.clone()),
+    let source = match (&args.video, &args.device) {
+        (Some(file), _) => Source::Video(file.clone()),
+        (_, Some(device)) => Source::Device(device.clone()),
         _ if args.drawn => Source::Drawn { seed: args.seed, rate_hz: args.rate_hz.unwrap_or(30.0) as u32 },
         _ => return drawn(args),
     };
@@ -140,15 +121,14 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     if args.drawn && args.rate_hz.is_some_and(|rate| !(1.0..=60.0).contains(&rate) || rate.fract() != 0.0) {
         bail!("a drawn camera takes 1 to 60 pictures a second, a whole number");
     }
-    if args.teach && args.port.is_none() && matches!(args.report, Format::Json) {
+    let prints_codes = args.teach && args.port.is_none();
+    if prints_codes && args.report == Format::Json {
         bail!("--teach without --port prints the teacher's words and no report");
     }
-    let folder = args.out.as_deref().map(folder::made).transpose()?;
     let mut plan = Plan {
         source,
         rate_hz: args.rate_hz,
-        folder,
-        overlay_every: args.overlay_every,
+        folder: args.out.as_deref().map(folder::made).transpose()?,
         live: args.port.is_some() || args.device.is_some(),
         fault: args.fault,
         holds: None,
@@ -156,32 +136,28 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     let feed = plan.open()?;
     let mut board = args.port.as_ref().map(Board::open).transpose()?;
     plan.holds = board.as_ref().map(|board| board.holds.clone());
-    let gains = Gains { normal_mn: args.normal_mn_per_px, shear_mn: args.shear_mn_per_px };
     let (mut was_blind, mut begin) = (None, args.begin);
     let report = film::follow(&plan, feed, |told| {
         let blind = match told {
             Told::Silence(blind) => Some(blind),
             Told::Picture(camera, summary, age_ms) => {
-                let words = told::teach(summary, age_ms).filter(|_| args.teach);
-                match &mut board {
-                    Some(board) => {
-                        let view = told::view(camera, summary, gains, age_ms).map(Down::View);
-                        let begins = begin.take_if(|_| view.is_some() && summary.forces.is_some());
-                        for command in view.into_iter().chain(words).chain(begins.map(Down::Begin)) {
-                            board.line.send(&command).context("cannot write to the line")?;
-                        }
+                if let Some(board) = &mut board {
+                    let view = told::view(camera, summary, told::GAINS, age_ms).map(Down::View);
+                    let begins = begin.take_if(|_| view.is_some() && summary.forces.is_some());
+                    let words = told::teach(summary, age_ms).filter(|_| args.teach);
+                    for command in view.into_iter().chain(words).chain(begins.map(Down::Begin)) {
+                        board.line.send(&command).context("cannot write to the line")?;
                     }
-                    None if words.is_some() => {
-                        out::say!("{}", told::teaching(summary, age_ms).unwrap_or_default())?;
-                    }
-                    None => {}
+                } else if let Some((v1, v2)) = summary.codes().filter(|_| prints_codes) {
+                    // A line of `tenax monitor --teach`.
+                    out::say!("{v1} {v2} {age_ms}")?;
                 }
                 summary.blind
             }
         };
         if blind.map(name) != was_blind.map(name) {
             match blind {
-                Some(blind) => out::note!("tenax: the camera is {}; nothing is told", name(blind)),
+                Some(blind) => out::note!("tenax: the camera is {}; nothing is sent", name(blind)),
                 None => out::note!("tenax: the camera sees again"),
             }
             was_blind = blind;
@@ -189,35 +165,35 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         Ok(())
     })?;
     if let Some(board) = board {
-        let (done, refused) = board.answers();
+        // The last answers are under way.
+        std::thread::sleep(Duration::from_millis(100));
+        let [done, refused] = [0, 1].map(|n: usize| board.answers[n].load(Ordering::Relaxed));
         out::note!("tenax: the board took {done} messages of the camera and refused {refused}");
     }
-    if args.teach && args.port.is_none() {
-        return Ok(ExitCode::SUCCESS);
+    if !prints_codes {
+        args.report.show(&report)?;
     }
-    args.report.show(&report)?;
     Ok(ExitCode::SUCCESS)
 }
 
 fn behaviour(text: &str) -> Result<Behaviour, String> {
-    match text.split_once(':') {
-        None => match text {
-            "gentle-grasp" => Ok(Behaviour::GentleGrasp),
-            "hold" => Ok(Behaviour::Hold),
-            "hand-over" => Ok(Behaviour::HandOver),
-            _ => Err("gentle-grasp, hold, hand-over or turn:DEGREES".to_owned()),
-        },
-        Some(("turn", degrees)) => match degrees.parse::<f64>() {
-            Ok(degrees) if degrees.abs() <= 90.0 => {
+    let wrong = || "gentle-grasp, hold, hand-over or turn:DEGREES, of -90 to 90 degrees".to_owned();
+    match text {
+        "gentle-grasp" => Ok(Behaviour::GentleGrasp),
+        "hold" => Ok(Behaviour::Hold),
+        "hand-over" => Ok(Behaviour::HandOver),
+        _ => {
+            let degrees: f64 =
+                text.strip_prefix("turn:").and_then(|own| own.parse().ok()).ok_or_else(wrong)?;
+            if degrees.abs() > 90.0 {
+                Err(wrong())
+            } else {
                 Ok(Behaviour::Turn { by_ddeg: (10.0 * degrees).round() as i16 })
             }
-            _ => Err("a turn is by -90 to 90 degrees".to_owned()),
-        },
-        Some(_) => Err("gentle-grasp, hold, hand-over or turn:DEGREES".to_owned()),
+        }
     }
 }
 
-/// What a person reads of a camera that is not believed.
 const fn name(blind: Blind) -> &'static str {
     match blind {
         Blind::Lost(_) => "lost",
@@ -227,26 +203,25 @@ const fn name(blind: Blind) -> &'static str {
     }
 }
 
-/// A board that listens.
 struct Board {
     line: Outbox<Box<dyn Write + Send>>,
     /// Whether its hand holds something.
     holds: Arc<AtomicBool>,
-    /// Commands that it carried out, and that it refused.
+    /// Commands carried out, and refused.
     answers: Arc<[AtomicUsize; 2]>,
 }
 
 impl Board {
-    /// What the board says is read as it comes, so that its line does not fill.
+    /// Opens a line and reads it from now on, so that it does not fill. Fails if it cannot be opened or is a captured one.
     fn open(target: &Target) -> anyhow::Result<Self> {
         let mut client = Client::open(target)?;
         if !client.open_session(Duration::from_secs(1))? {
             out::note!("tenax: the board offered no session; it will not listen to the camera");
         }
-        let line = client.take_outbox().context("a captured line cannot be told anything")?;
+        let line = client.take_outbox().context("nothing can be sent to a captured line")?;
         let holds = Arc::new(AtomicBool::new(false));
         let answers = Arc::new([AtomicUsize::new(0), AtomicUsize::new(0)]);
-        let (told, counts) = (holds.clone(), answers.clone());
+        let board = Self { line, holds: holds.clone(), answers: answers.clone() };
         std::thread::spawn(move || {
             let mut was_open = false;
             while let Ok(frame) = client.next_frame() {
@@ -255,30 +230,22 @@ impl Board {
                     Up::Slow(slow) => {
                         let held = slow.forces.is_some_and(|forces| forces.load_mn > HOLDS_MN);
                         was_open |= slow.forces.is_some() && !held;
-                        // What was held before anybody looked has to be learned in the hand.
-                        told.store(held && was_open, Ordering::Relaxed);
+                        // An object that is held from the start has to be learned in the hand.
+                        holds.store(held && was_open, Ordering::Relaxed);
                     }
-                    Up::Event(Event { kind: EventKind::Behaviour(what, ending), .. }) => match ending {
-                        None => out::note!("tenax: the board begins: {}", what.name()),
-                        Some(ending) => {
-                            out::note!("tenax: the board ends: {}: {}", what.name(), ending.name())
-                        }
-                    },
+                    Up::Event(Event { kind: EventKind::Behaviour(what, ending), .. }) => {
+                        let ending = ending.map_or("begun", |ending| ending.name());
+                        out::note!("tenax: the board's {}: {ending}", what.name());
+                    }
                     Up::Answer { answer, .. } => {
                         let refused = matches!(answer, Answer::Refused(_));
-                        counts[usize::from(refused)].fetch_add(1, Ordering::Relaxed);
+                        answers[usize::from(refused)].fetch_add(1, Ordering::Relaxed);
                     }
                     _ => (),
                 }
             }
         });
-        Ok(Self { line, holds, answers })
-    }
-
-    fn answers(&self) -> (usize, usize) {
-        // The last ones are under way.
-        std::thread::sleep(Duration::from_millis(100));
-        (self.answers[0].load(Ordering::Relaxed), self.answers[1].load(Ordering::Relaxed))
+        Ok(board)
     }
 }
 
@@ -293,41 +260,16 @@ fn drawn(args: &Args) -> anyhow::Result<ExitCode> {
 fn calibrated(args: &CalibrateArgs) -> anyhow::Result<ExitCode> {
     let skin = Skin::at_rest(&args.loads)?;
     let samples = skin.samples(&args.loads)?;
-    let (out_of_it, learned) = calibrate::left_out(&samples, &args.leave_out);
-    if !args.leave_out.is_empty() && out_of_it.is_empty() {
+    let (tried, learned) = calibrate::left_out(&samples, &args.leave_out);
+    if !args.leave_out.is_empty() && tried.is_empty() {
         bail!("no load of {} has one of the masses to leave out", args.loads.display());
     }
     let loads = skin.fit(&learned)?;
-    let mut scores = vec![("learned", calibrate::score(&loads, &learned))];
-    let mut tried = out_of_it;
-    if let Some(table) = &args.try_loads {
-        tried.extend(skin.samples(table)?);
-    }
-    if !tried.is_empty() {
-        scores.push(("tried", calibrate::score(&loads, &tried)));
-    }
-    let scores: serde_json::Map<_, _> = scores
-        .iter()
-        .map(|(name, score)| Ok(((*name).to_owned(), serde_json::to_value(score)?)))
-        .collect::<anyhow::Result<_>>()?;
-    args.report.show(&scores)?;
-    if args.report == Format::Json {
-        return Ok(ExitCode::SUCCESS);
-    }
-    out::say!("{} markers", skin.markers())?;
-    if !tried.is_empty() {
-        out::say!("tried, a load a row, N:   mass_g   truth x   normal   z      estimate x   normal   z")?;
-        for (mass, truth, estimate) in calibrate::table(&loads, &tried) {
-            out::say!(
-                "{mass:34.1}{:10.2}{:9.2}{:7.2}{:16.2}{:9.2}{:7.2}",
-                truth[0],
-                truth[1],
-                truth[2],
-                estimate[0],
-                estimate[1],
-                estimate[2]
-            )?;
-        }
-    }
+    args.report.show(&calibrate::Report {
+        markers: skin.markers(),
+        learned: calibrate::score(&loads, &learned),
+        tried: (!tried.is_empty()).then(|| calibrate::score(&loads, &tried)),
+        loads: calibrate::table(&loads, &tried),
+    })?;
     Ok(ExitCode::SUCCESS)
 }

@@ -14,25 +14,22 @@ use super::story::Story;
 
 /// The gripper opens so fast when they let go of everything.
 const LET_GO: MotorDrive = MotorDrive::Open(Duty::per_mille(500));
-/// They ease the grip slowly.
 const EASE: MotorDrive = MotorDrive::Open(Duty::per_mille(40));
 /// Force at which a finger stalls under the whole supply, N, and its speed without a load, mm/s: as in the three scenes.
 const STALL_N: f64 = 80.0;
 const SPEED_MM_S: f64 = 60.0;
-/// How fast somebody tightens a grip, N/s, and how much faster they take hold of something.
+/// Rate of tightening a grip, N/s, and the factor for taking hold.
 const TIGHTENS_N_S: std::ops::Range<f64> = 2.0..10.0;
 const TAKES_HOLD: f64 = 4.0;
 /// Once it has slid so far they let it slide no more, mm: the pads are 55 mm long.
 const ALARMED_MM: f64 = 25.0;
 /// By now they have taken hold, s.
 const TAKEN_S: f64 = 1.9;
-/// How they close on something that they do not touch yet, per mille.
+/// Duty of closing before contact, per mille.
 const COMES: f64 = 600.0;
 
-/// What they are about to do.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Wish {
-    /// Leave it.
     Hold,
     /// Close until each finger presses so hard, N, and nothing slips.
     Tighten(f64),
@@ -61,10 +58,10 @@ pub struct Operator {
     wish: Wish,
     tightens_n_s: f64,
     stiffness_n_per_mm: f64,
-    /// How far and how long they let it slip, mm and s.
+    /// Slip that they tolerate, mm and s.
     patience: (f64, f64),
     slipped: (f64, f64),
-    /// How far it slid altogether, mm.
+    /// Total way of the object, mm.
     lost_mm: f64,
 }
 
@@ -100,13 +97,11 @@ impl Operator {
         operator
     }
 
-    /// Draws how long they let it slip the next time.
     fn wait(&mut self) {
         self.patience = (self.rng.random_range(1.0..9.0), self.rng.random_range(0.3..2.5));
         self.slipped = (0.0, 0.0);
     }
 
-    /// What they do with the motor for the next frame. `slips` and the world are what they see.
     pub fn drive(&mut self, world: &World, slips: bool) -> MotorDrive {
         let (touch, t_s) = (world.touch(), world.now_s());
         let grip_n = touch.normal_n;

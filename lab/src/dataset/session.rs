@@ -6,12 +6,10 @@ use serde::Serialize;
 use tenax_sim::array::material::{Ends, HELD_OUT, Material, SEEN};
 use tenax_sim::labelled::Part;
 
-/// How many sessions of each material there are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sizes {
     /// To learn from, of each seen material.
     pub train: usize,
-    /// To choose by.
     pub validation: usize,
     /// To judge by, of each seen material; the material that is held out has as many again.
     pub test: usize,
@@ -29,15 +27,10 @@ impl Sizes {
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Session {
-    /// Of the material, with a number.
     pub name: String,
-    /// Whole sessions are for one thing: no step of one is in two parts.
     pub split: Part,
-    /// The box's sides.
     pub material: &'static str,
-    /// Seed of all its noise.
     pub seed: u64,
-    /// Which array: gains and offsets of its elements.
     pub specimen: u32,
     pub mu_s: f64,
     pub mu_d: f64,
@@ -51,27 +44,26 @@ pub struct Session {
     pub stiffness_n_per_mm: f64,
     /// The way over which contacts are new ones, um.
     pub renews_um: f64,
-    /// How much of the shear that lets go comes off an element's load.
+    /// Part of the released shear that comes off an element's load.
     pub slip_part: f64,
     /// The part of it that goes to the cover's rim.
     pub rim_part: f64,
-    /// Where the box lies along the array, mm from its middle.
+    /// Place of the box along the array, mm from its middle.
     pub place_mm: f64,
-    /// How far beside the pads the mass of the box lies, mm.
+    /// Offset of the box's mass beside the pads, mm.
     pub offset_mm: f64,
-    /// How far under them, mm.
+    /// Offset below them, mm.
     pub hang_mm: f64,
     /// Sensitivity of the array, mV/N an element.
     pub mv_per_n: f64,
-    /// How unlike its elements are, as a part.
     pub spread: f64,
     /// Noise of a reading, rms, mV.
     pub noise_mv: f64,
-    /// What a knock presses on the pad, mN for each mV at a film.
+    /// Force of a knock on the pad, mN for each mV at a film.
     pub knock_mn_per_mv: f64,
-    /// What the gear's teeth press on it, as a part of the load.
+    /// Force of the gear's teeth on it, as a part of the load.
     pub motor_part: f64,
-    /// How much of the load a shear as large as it moves to the pad's end.
+    /// Part of the load that a shear as large as it moves to the pad's end.
     pub tilt: f64,
 }
 
@@ -104,7 +96,7 @@ impl Session {
             noise_mv: drawn(contact.noise_mv),
             knock_mn_per_mv: drawn(contact.knock_mn_per_mv),
             motor_part: drawn(contact.motor_part),
-            // Last, so that what was drawn before it is what it was.
+            // Last: a field's draw depends on those before it.
             tilt: drawn(contact.tilt),
             name,
             split,
@@ -118,48 +110,6 @@ impl Session {
 /// To four places: what the manifest says is what was run.
 fn rounded(value: f64) -> f64 {
     (value * 1e4).round() / 1e4
-}
-
-/// Puts what is held out into one quantity of a material.
-type Outside = fn(&mut Material);
-
-/// Every quantity that is drawn, under its name in the manifest, and none.
-const OUTSIDE: [(&str, Outside); 16] = [
-    ("none", |_| ()),
-    ("mu_s", |own| own.mu_s = HELD_OUT.mu_s),
-    ("mu_d / mu_s", |own| own.mu_ratio = HELD_OUT.mu_ratio),
-    ("mu_per_decade", |own| own.mu_per_decade = HELD_OUT.mu_per_decade),
-    ("pitch_mm", |own| own.pitch_mm = HELD_OUT.pitch_mm),
-    ("uneven", |own| own.uneven = HELD_OUT.uneven),
-    ("stiffness_n_per_mm", |own| own.stiffness_n_per_mm = HELD_OUT.stiffness_n_per_mm),
-    ("renews_um", |own| own.contact.renews_um = HELD_OUT.contact.renews_um),
-    ("slip_part", |own| own.contact.slip_part = HELD_OUT.contact.slip_part),
-    ("rim_part", |own| own.contact.rim_part = HELD_OUT.contact.rim_part),
-    ("mv_per_n", |own| own.contact.mv_per_n = HELD_OUT.contact.mv_per_n),
-    ("spread", |own| own.contact.spread = HELD_OUT.contact.spread),
-    ("noise_mv", |own| own.contact.noise_mv = HELD_OUT.contact.noise_mv),
-    ("knock_mn_per_mv", |own| own.contact.knock_mn_per_mv = HELD_OUT.contact.knock_mn_per_mv),
-    ("motor_part", |own| own.contact.motor_part = HELD_OUT.contact.motor_part),
-    ("tilt", |own| own.contact.tilt = HELD_OUT.contact.tilt),
-];
-
-/// Sessions to judge by in which one quantity alone lies where nobody has learned, and some in which none does: of each as many of every
-/// seen material. They are called by the quantity in place of the material. What else a session draws is the same for every quantity.
-pub fn outside(seed: u64, each: usize) -> Vec<Session> {
-    let mut all = Vec::new();
-    for (name, put) in OUTSIDE {
-        for (index, seen) in SEEN.into_iter().enumerate() {
-            for number in 1..=each {
-                let mut material = Material { name, ..seen };
-                put(&mut material);
-                let mut rng = ChaCha8Rng::seed_from_u64(seed);
-                rng.set_stream((1 << 48) | ((index as u64) << 32) | number as u64);
-                let session = format!("{name}-{}-{number:02}", seen.name);
-                all.push(Session::draw(session, Part::Test, &material, &mut rng));
-            }
-        }
-    }
-    all
 }
 
 /// All sessions of a data set, the same for the same seed. Each draws from a stream of its own material, split and number:
@@ -180,33 +130,4 @@ pub fn sessions(seed: u64, sizes: Sizes) -> Vec<Session> {
         }
     }
     all
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn one_quantity_is_outside_at_a_time_and_the_rest_is_as_it_was() {
-        let drawn = outside(1, 2);
-        let (inside, others) = drawn.split_at(8);
-        assert_eq!(others.len(), 15 * 8);
-        for (n, own) in others.iter().enumerate() {
-            let same = &inside[n % 8];
-            let fields = |session| serde_json::to_value(session).unwrap();
-            let (own, same) = (fields(own), fields(same));
-            let differ: Vec<&String> = own
-                .as_object()
-                .unwrap()
-                .iter()
-                .filter(|(name, value)| same[*name] != **value)
-                .map(|own| own.0)
-                .collect();
-            // Dynamic friction follows static friction.
-            let drawn = differ.iter().filter(|name| !["name", "material", "mu_d"].contains(&name.as_str()));
-            let ratio = own["material"] == "mu_d / mu_s";
-            assert_eq!(drawn.count(), usize::from(!ratio), "{differ:?}");
-            assert_eq!(ratio || own["material"] == "mu_s", differ.iter().any(|name| *name == "mu_d"));
-        }
-    }
 }

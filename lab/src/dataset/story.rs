@@ -1,4 +1,4 @@
-//! What happens in a session: three scenes of the repository, with the session's numbers in place of theirs.
+//! The stories of a session: three scenes of the repository, with the session's numbers in place of theirs.
 
 use anyhow::Context;
 use rand::{RngExt, rngs::ChaCha8Rng};
@@ -8,7 +8,6 @@ use toml::{Table, Value};
 
 use super::session::Session;
 
-/// What is recorded of every session.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Story {
     /// Bamshad 2023, section 3.2: balls are poured in until it slips, again and again.
@@ -20,10 +19,8 @@ pub enum Story {
 }
 
 impl Story {
-    /// All of them, in the order of the data.
     pub const ALL: [Self; 3] = [Self::Pour, Self::Pick, Self::Disturb];
 
-    /// As in the data.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Pour => "pour",
@@ -40,13 +37,8 @@ impl Story {
         }
     }
 
-    /// The scene of this story in this session. Fails if a drawn number is none that a scene may have.
-    pub fn scene_in(self, session: &Session, rng: &mut ChaCha8Rng) -> anyhow::Result<SceneFile> {
-        self.edited_in(session, rng, |_| ())
-    }
-
-    /// The same, and whatever else `edit` does to the file. Fails if a number is none that a scene may have.
-    pub fn edited_in(
+    /// The scene of this story in this session, edited. Fails if a number is none that a scene may have.
+    pub fn scene_in(
         self,
         session: &Session,
         rng: &mut ChaCha8Rng,
@@ -92,7 +84,7 @@ impl Story {
         Ok((scene, duration_s))
     }
 
-    /// The same story for a fingertip that has to hold the box itself, once somebody has closed the hand on it with about
+    /// The story for a fingertip that has to hold the box itself, once somebody has closed the hand on it with about
     /// what holds it: nobody tightens the grip but the fingertip. Fails if a drawn number is none that a scene may have.
     pub fn task_in(self, session: &Session, rng: &mut ChaCha8Rng) -> anyhow::Result<SceneFile> {
         let (mut scene, duration_s) = self.told(session, rng)?;
@@ -117,11 +109,11 @@ impl Story {
                 let (mut fills, mut at_s) = (Vec::new(), 4.0);
                 while at_s < POUR_S - 3.0 {
                     let for_s = rng.random_range(1.0..3.0);
-                    fills.push(entry(&[
+                    fills.push(Value::Table(entry(&[
                         ("at_s", at_s),
                         ("for_s", for_s),
                         ("add_kg", rng.random_range(0.05..0.13)),
-                    ]));
+                    ])));
                     at_s += for_s + rng.random_range(0.3..1.5);
                 }
                 scene.insert("fill".to_owned(), Value::Array(fills));
@@ -134,23 +126,21 @@ impl Story {
             Self::Disturb => {
                 put(scene, "object", "mass_kg", Value::from(rng.random_range(0.10..0.30)));
                 let knock = |rng: &mut ChaCha8Rng, at_s: f64| {
-                    entry(&[
+                    Value::Table(entry(&[
                         ("at_s", at_s + rng.random_range(0.0..0.5)),
                         ("peak_mv", over_decades(rng, 30.0..300.0)),
                         // Frames and tools ring from 50 Hz to 2 kHz, for 1 to 30 ms.
                         ("ring_hz", over_decades(rng, 50.0..2_000.0)),
                         ("decay_ms", over_decades(rng, 1.0..30.0)),
                         ("uneven", rng.random_range(0.0..1.0)),
-                    ])
+                    ]))
                 };
                 let knocks = (0..5).map(|n| knock(rng, 3.3 + 0.6 * f64::from(n))).collect();
                 let mut swing = |at_s: f64, cycles: i64, rate_hz: f64, peak: std::ops::Range<f64>| {
                     let mut swing =
                         entry(&[("at_s", at_s), ("rate_hz", rate_hz), ("peak_m_s2", rng.random_range(peak))]);
-                    if let Value::Table(swing) = &mut swing {
-                        swing.insert("cycles".to_owned(), Value::from(cycles));
-                    }
-                    swing
+                    swing.insert("cycles".to_owned(), Value::from(cycles));
+                    Value::Table(swing)
                 };
                 let swings = vec![swing(6.4, 3, 1.5, 1.0..6.0), swing(8.6, 12, 9.0, 0.3..1.5)];
                 scene.insert("knock".to_owned(), Value::Array(knocks));
@@ -161,22 +151,20 @@ impl Story {
     }
 }
 
-/// As often in one part of a decade as in another.
 fn over_decades(rng: &mut ChaCha8Rng, ends: std::ops::Range<f64>) -> f64 {
     rng.random_range(ends.start.ln()..ends.end.ln()).exp()
 }
 
-/// How long a pour lasts, s.
+/// Duration of a pour, s.
 const POUR_S: f64 = 26.0;
-/// How long a pick and place lasts, s.
+/// Duration of a pick and place, s.
 const PICK_S: f64 = 9.0;
-/// How long the disturbances last, s; in the last 3 s the grip changes.
+/// Duration of the disturbances, s; in the last 3 s the grip changes.
 const DISTURB_S: f64 = 13.0;
 
-/// How much more noise than its session a disturbed recording has.
 const NOISIER: std::ops::Range<f64> = 1.0..5.0;
 
-/// How somebody closes on the box, and opens, per mille.
+/// Duty of closing on the box and of opening, per mille.
 const DUTY: i64 = 300;
 
 fn finish(mut scene: Table, duration_s: f64, called: &str) -> anyhow::Result<SceneFile> {
@@ -186,14 +174,12 @@ fn finish(mut scene: Table, duration_s: f64, called: &str) -> anyhow::Result<Sce
 
 fn drive(kind: &str, at_s: f64, for_s: f64) -> Value {
     let mut drive = entry(&[("at_s", at_s), ("for_s", for_s)]);
-    if let Value::Table(drive) = &mut drive {
-        drive.insert("kind".to_owned(), Value::from(kind));
-        drive.insert("duty_permille".to_owned(), Value::from(DUTY));
-    }
-    drive
+    drive.insert("kind".to_owned(), Value::from(kind));
+    drive.insert("duty_permille".to_owned(), Value::from(DUTY));
+    Value::Table(drive)
 }
 
-/// How long the hand has to close until each finger presses with `grip_n`, s: over the gap, and then against a spring
+/// Time of closing until each finger presses with `grip_n`, s: over the gap, and then against a spring
 /// that slows it.
 fn closing_s(scene: &Table, grip_n: f64, session: &Session) -> f64 {
     let of = |section: &str, key: &str| number(scene, section, key);
@@ -213,8 +199,9 @@ fn number(scene: &Table, section: &str, key: &str) -> f64 {
     value.map_or(0.0, |value| value.as_float().or(value.as_integer().map(|n| n as f64)).unwrap_or(0.0))
 }
 
-fn entry(keys: &[(&str, f64)]) -> Value {
-    Value::Table(keys.iter().map(|&(key, value)| (key.to_owned(), Value::from(value))).collect())
+/// An entry of a scene's list.
+pub fn entry(keys: &[(&str, f64)]) -> Table {
+    keys.iter().map(|&(key, value)| (key.to_owned(), Value::from(value))).collect()
 }
 
 fn put(scene: &mut Table, section: &str, key: &str, value: Value) {

@@ -1,8 +1,7 @@
-//! What the wearer wants, scored on recorded envelopes of people: right, wrong way, missed, false and late.
+//! Intent recognition, scored on recorded envelopes of people: right, wrong way, missed, false and late.
 //!
 //! Two kinds of [recordings]: sessions of minutes with labels, and [short ones](two_channel) that are named by their movement.
 
-pub mod asked;
 pub mod curves;
 pub mod faults;
 pub mod interval;
@@ -26,69 +25,67 @@ pub use self::score::Score;
 use self::trial::{Kind, Trial, Trials};
 use self::two_channel::Session;
 
+/// A value for each calibration that a recording is played with; none where every calibration was refused.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Kinds<T> {
+    /// Calibrated in the session that is scored.
+    pub same_session: Option<T>,
+    /// Calibrated in another posture of the same day.
+    pub other_posture: Option<T>,
+    /// Calibrated on the first day, scored on the others.
+    pub first_day_kept: Option<T>,
+}
+
+impl<T> Kinds<T> {
+    fn of(value: impl Fn(Kind) -> Option<T>) -> Self {
+        Self {
+            same_session: value(Kind::SameSession),
+            other_posture: value(Kind::OtherPosture),
+            first_day_kept: value(Kind::FirstDayKept),
+        }
+    }
+}
+
 #[derive(Clone, Debug, Serialize)]
 pub struct Person {
-    /// Its number in the file names.
+    /// Number in the file names.
     pub person: u32,
-    /// Calibrated in the session that is scored; none where every calibration was refused.
-    pub same_session: Option<Score>,
-    /// Calibrated in another posture of the same day.
-    pub other_posture: Option<Score>,
-    /// Calibrated on the first day, scored on the others.
-    pub first_day_kept: Option<Score>,
-    /// Calibrations that were refused, and why, by day.
+    #[serde(flatten)]
+    pub scores: Kinds<Score>,
+    /// Refused calibrations and their reasons, by day.
     pub refused: BTreeMap<u32, String>,
     /// Calibrations that were tried.
     pub sessions: usize,
-    /// Whether a new calibration is asked for where it helps; not while constants are fitted.
-    pub asked: Option<asked::Asked>,
 }
 
-/// The whole folder: medians over people.
+/// The whole folder.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
-    pub same_session: Option<Score>,
-    pub other_posture: Option<Score>,
-    pub first_day_kept: Option<Score>,
+    /// Medians over people.
+    #[serde(flatten)]
+    pub scores: Kinds<Score>,
     /// Part of the calibrations that were refused.
     pub refused_part: f64,
-    /// Between which two each of these medians lies.
-    pub intervals: Intervals,
-    /// Each by itself.
+    /// 95 % intervals of the medians: people and their sessions drawn again.
+    pub intervals: Kinds<Interval>,
     pub persons: Vec<Person>,
-    /// Faults drawn over everybody, where that was asked for.
     pub faults: Option<faults::Report>,
-    /// Short recordings of a movement each.
     pub two_channel: Vec<two_channel::Report>,
 }
 
-/// 95 % intervals, people and their sessions drawn again.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub struct Intervals {
-    pub same_session: Option<Interval>,
-    pub other_posture: Option<Interval>,
-    pub first_day_kept: Option<Interval>,
-}
-
 impl Report {
-    /// The medians of these people.
     pub(super) fn of(played: Vec<(Person, Sessions)>) -> Self {
         let (persons, sessions): (Vec<_>, Vec<_>) = played.into_iter().unzip();
-        let of = |kind: fn(&Person) -> Option<Score>| {
-            Score::quantile(&persons.iter().filter_map(kind).collect::<Vec<_>>(), 0.5)
+        let of = |kind: Kind| {
+            let scores: Vec<Score> = sessions.iter().filter_map(|own: &Sessions| own.score(kind)).collect();
+            Score::quantile(&scores, 0.5)
         };
-        let refused: usize = persons.iter().map(|person| person.refused.len()).sum();
+        let refused: usize = persons.iter().map(|person: &Person| person.refused.len()).sum();
         let calibrated: usize = persons.iter().map(|person| person.sessions).sum();
         Report {
-            same_session: of(|person| person.same_session),
-            other_posture: of(|person| person.other_posture),
-            first_day_kept: of(|person| person.first_day_kept),
+            scores: Kinds::of(of),
             refused_part: refused as f64 / calibrated.max(1) as f64,
-            intervals: Intervals {
-                same_session: Interval::of(&sessions, Kind::SameSession),
-                other_posture: Interval::of(&sessions, Kind::OtherPosture),
-                first_day_kept: Interval::of(&sessions, Kind::FirstDayKept),
-            },
+            intervals: Kinds::of(|kind| Interval::of(&sessions, kind)),
             persons,
             faults: None,
             two_channel: Vec::new(),
@@ -96,7 +93,7 @@ impl Report {
     }
 }
 
-/// What a folder and its own folders have.
+/// Recordings of a folder and its own folders.
 #[derive(Debug, Default)]
 pub(super) struct Recordings {
     pub people: BTreeMap<u32, Days>,
@@ -105,7 +102,7 @@ pub(super) struct Recordings {
 
 impl Recordings {
     /// Reads everything, or one person.
-    pub fn read(folder: &Path, only: Option<u32>) -> anyhow::Result<Self> {
+    pub fn read(folder: &Path) -> anyhow::Result<Self> {
         let mut files = csv_files(folder)?;
         files.sort();
         let mut all = Self::default();
@@ -113,18 +110,16 @@ impl Recordings {
         for path in files {
             let stem = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or_default();
             if let Some([person, day, posture]) = numbers(stem) {
-                if only.is_none_or(|only| only == person) {
-                    let recording = Recording::read(&path)?;
-                    all.people.entry(person).or_default().entry(day).or_default().insert(posture, recording);
-                }
-            } else if only.is_none() && stem.starts_with(two_channel::PREFIX) {
+                let days = all.people.entry(person).or_default();
+                days.entry(day).or_default().insert(posture, Recording::read(&path)?);
+            } else if stem.starts_with(two_channel::PREFIX) {
                 short.push(path);
             }
         }
         all.sessions = two_channel::sessions(&short)?;
         if all.people.is_empty() && all.sessions.is_empty() {
             bail!(
-                "{}: no recording is called personP_dayD_postureQ.csv, with P as asked for, or {}*.csv",
+                "{}: no recording is called personP_dayD_postureQ.csv or {}*.csv",
                 folder.display(),
                 two_channel::PREFIX
             );
@@ -150,27 +145,18 @@ fn csv_files(folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
     Ok(files)
 }
 
-/// The two-channel sessions of a folder and its own folders.
-///
-/// # Errors
-/// If there is no recording, or one cannot be read.
+/// The two-channel sessions of a folder and its own folders. Fails if there is no recording, or one cannot be read.
 pub fn sessions(folder: &Path) -> anyhow::Result<Vec<Session>> {
-    Ok(Recordings::read(folder, None)?.sessions)
+    Ok(Recordings::read(folder)?.sessions)
 }
 
-/// Scores everybody in a folder, or one person; and so many faults drawn over them.
-///
-/// # Errors
-/// If nothing is there or a recording cannot be read.
-pub fn evaluate(folder: &Path, only: Option<u32>, faults: u32, seed: u64) -> anyhow::Result<Report> {
-    let all = Recordings::read(folder, only)?;
+/// Scores everybody in a folder, and so many faults drawn over them. Fails if there is no recording, or one cannot be read.
+pub fn evaluate(folder: &Path, faults: u32, seed: u64) -> anyhow::Result<Report> {
+    let all = Recordings::read(folder)?;
     let trials: Vec<Trial> = all.people.values().flat_map(|days| Trials::of(days).all).collect();
     let faults =
         (faults > 0).then(|| faults::draw(&FITTED, &trials.iter().collect::<Vec<_>>(), faults, seed));
-    let score = |(&number, days)| {
-        let (person, sessions) = person(&FITTED, number, days);
-        (Person { asked: asked::asked(&FITTED, days), ..person }, sessions)
-    };
+    let score = |(&number, days)| person(&FITTED, number, days);
     let persons = all.people.par_iter().map(score).collect();
     let two_channel = all.sessions.par_iter().map(|session| session.score(&FITTED)).collect();
     Ok(Report { two_channel, faults, ..Report::of(persons) })
@@ -178,18 +164,10 @@ pub fn evaluate(folder: &Path, only: Option<u32>, faults: u32, seed: u64) -> any
 
 pub(super) fn person(fitted: &'static Fitted, number: u32, days: &Days) -> (Person, Sessions) {
     let Trials { all, refused } = Trials::of(days);
-    let sessions =
-        Sessions(all.iter().map(|trial| (trial.kind, trial.counted(&trial.play(fitted)))).collect());
-    let person = Person {
-        person: number,
-        same_session: sessions.score(Kind::SameSession),
-        other_posture: sessions.score(Kind::OtherPosture),
-        first_day_kept: sessions.score(Kind::FirstDayKept),
-        refused,
-        sessions: days.len(),
-        asked: None,
-    };
-    (person, sessions)
+    let counted = all.iter().map(|trial| (trial.kind, trial.counted(&trial.play(fitted))));
+    let sessions = Sessions(counted.collect());
+    let scores = Kinds::of(|kind| sessions.score(kind));
+    (Person { person: number, scores, refused, sessions: days.len() }, sessions)
 }
 
 #[cfg(test)]

@@ -43,7 +43,7 @@ impl<'a> Wearer<'a> {
         Self { number, days, trials: Trials::of(days).all.into_iter().map(heard).collect() }
     }
 
-    /// What this wearer's scores cost: windows that are not right, and those the wrong way, unanswered and false motions, which annoy
+    /// Cost of this wearer's scores: windows that are not right, and those the wrong way, unanswered and false motions, which annoy
     /// more than their share, and what is late.
     fn cost(&self, fitted: &'static Fitted) -> f64 {
         let of = |kind: Kind, false_motion: f64| {
@@ -98,7 +98,6 @@ const OPENS: f64 = 20.0;
 /// Fitted without some people, and what it is worth on them.
 #[derive(Clone, Debug, Serialize)]
 pub struct Held {
-    /// Whom the constants were fitted on.
     pub fitted_on: Vec<u32>,
     /// Mean cost of the others: of the round figures, of what ships (which has seen them), and of what was fitted.
     pub plain_cost: f64,
@@ -108,13 +107,10 @@ pub struct Held {
 
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
-    /// Of what ships and of what was found: mean cost of a person, of the promises and of faults.
     pub cost: [f64; 2],
     /// Each way to hold people apart.
     pub held: Vec<Held>,
-    /// What was fitted on all others, on each person.
     pub held_one: emg::Report,
-    /// What was fitted on a half, on each person of the other: medians over those.
     pub held_half: emg::Report,
     /// The file, `logic/src/emg/fitted.rs`.
     pub file: String,
@@ -142,7 +138,7 @@ fn changed(from: &Fitted, steps: &[f64; Fitted::COUNT], rng: &mut ChaCha8Rng) ->
     (fitted, which)
 }
 
-/// What people cost, each by itself, then the promises and faults. None as soon as one of them is worse than before.
+/// Costs of the people, each by itself, then of the promises and faults. None as soon as one of them is worse than before.
 fn costs(
     folk: &[&Wearer],
     promises: &Promises,
@@ -198,7 +194,6 @@ fn search(
     ([first, sum(&least)], best)
 }
 
-/// Whom to fit on while the others are held apart: all but one, and each half.
 fn splits(count: usize) -> Vec<Vec<usize>> {
     let of = |size: usize| {
         let chosen = (0..1u32 << count).filter(move |own| own.count_ones() as usize == size);
@@ -210,12 +205,10 @@ fn splits(count: usize) -> Vec<Vec<usize>> {
     all
 }
 
-/// Searches for `rounds`, once with everybody and once for each way to hold people apart; `part` hears which part is done.
-///
-/// # Errors
-/// If there are not at least two people, or a recording cannot be read.
+/// Searches for `rounds`, once with everybody and once for each way to hold people apart; `part` gets the part that is done. Fails if
+/// there are not at least two people, or a recording cannot be read.
 pub fn fit(folder: &Path, rounds: u32, seed: u64, part: &(dyn Fn(f64) + Sync)) -> anyhow::Result<Report> {
-    let Recordings { people, sessions } = Recordings::read(folder, None)?;
+    let Recordings { people, sessions } = Recordings::read(folder)?;
     ensure!(people.len() > 1, "{}: one person is not enough to hold one apart", folder.display());
     let promises = Promises::of(&sessions);
     let wearers: Vec<Wearer> = people.iter().map(|(&number, days)| Wearer::of(number, days)).collect();
@@ -275,9 +268,9 @@ fn file(
 ) -> String {
     let persons: Vec<String> = all.iter().map(|wearer| wearer.number.to_string()).collect();
     let rows = [
-        row("same session", held.same_session, held.intervals.same_session),
-        row("other posture", held.other_posture, held.intervals.other_posture),
-        row("first day's calibration kept", held.first_day_kept, held.intervals.first_day_kept),
+        row("same session", held.scores.same_session, held.intervals.same_session),
+        row("other posture", held.scores.other_posture, held.intervals.other_posture),
+        row("first day's calibration kept", held.scores.first_day_kept, held.intervals.first_day_kept),
     ];
     format!(
         "//! The constants of the wearer's model. Written by `cargo tenax train emg --ship`; do not edit.\n//!\n\

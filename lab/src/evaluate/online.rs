@@ -7,61 +7,61 @@ use anyhow::Context;
 use rand::{SeedableRng, rngs::ChaCha8Rng};
 use rayon::prelude::*;
 use serde::Serialize;
-
-use crate::dataset::session::{Session, Sizes, sessions};
-use crate::dataset::story::Story;
 use tenax_sim::array::material::SEEN;
 use tenax_sim::jobs::{Job, Jobs, Told};
 use tenax_sim::report::bound::Control;
 use tenax_sim::session::{self, Board};
 
-/// Times that each task is tried with each material.
+use crate::dataset::session::{Session, Sizes, sessions};
+use crate::dataset::story::Story;
+
+/// Repetitions of each task with each material.
 pub const TIMES: usize = 10;
-/// The two tasks, as the paper orders them.
+/// In the paper's order.
 pub const TASKS: [Story; 2] = [Story::Pick, Story::Pour];
 
-#[derive(Clone, Debug, Serialize)]
-pub struct Try {
-    /// Of the box.
-    pub material: &'static str,
-    /// `pick` or `pour`.
-    pub task: &'static str,
-    /// Of the world's noise.
-    pub seed: u64,
-    /// Whether the box stayed in the hand.
-    pub kept: bool,
-    /// How far it slid, mm.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct Figures {
+    /// Way of the box in the hand and in the bound's, mm.
     pub distance_mm: f64,
-    /// The controls that kept it: without the reflex, in a constant grip of the same mean force, with each detector alone.
-    pub kept_by: Vec<String>,
     pub bound_distance_mm: f64,
-    /// The greatest force of a finger, N.
+    /// The greatest force of a finger, the bound's, and the least that would have held the box at its heaviest, N.
     pub peak_force_n: f64,
-    /// The bound's, N.
     pub bound_peak_force_n: f64,
-    /// The least force that would have held the box at its heaviest, N.
     pub needed_force_n: f64,
 }
 
-/// The tries of one task with one material.
 #[derive(Clone, Debug, Serialize)]
-pub struct Row {
-    /// Of the box.
+pub struct Try {
     pub material: &'static str,
     /// `pick` or `pour`.
     pub task: &'static str,
+    pub seed: u64,
+    /// Whether the box stayed in the hand.
+    pub kept: bool,
+    /// Controls that kept it: without the reflex, in a constant grip of the same mean force, with each detector alone.
+    pub kept_by: Vec<String>,
+    #[serde(flatten)]
+    pub figures: Figures,
+}
+
+/// The tries of one task with one material; means of their figures.
+#[derive(Clone, Debug, Serialize)]
+pub struct Row {
+    pub material: &'static str,
+    pub task: &'static str,
     pub tries: usize,
-    /// Those in which the box was kept.
     pub kept: usize,
-    /// The tries in which each control kept it: without the reflex, in a constant grip of the same mean force, with each detector
-    /// alone.
+    #[serde(flatten)]
+    pub figures: Figures,
+    /// Tries that each control kept.
     pub kept_by: BTreeMap<String, usize>,
-    /// Means over the tries: slid, the bound's, mm; greatest force, the bound's, needed, N.
-    pub distance_mm: f64,
-    pub bound_distance_mm: f64,
-    pub peak_force_n: f64,
-    pub bound_peak_force_n: f64,
-    pub needed_force_n: f64,
+}
+
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    pub rows: Vec<Row>,
+    pub tries: Vec<Try>,
 }
 
 /// Tries everything, on all cores. `progress` is told the part that is done, 0 to 1.
@@ -92,11 +92,13 @@ fn attempt(task: Story, session: &Session, board: &Board, mut job: Job) -> anyho
         seed: session.seed,
         kept: Control::of(task.name(), &outcome.truth).kept,
         kept_by: controls.iter().filter(|own| own.kept).map(|own| own.name.clone()).collect(),
-        distance_mm: report.slip.distance_mm.context(known)?,
-        bound_distance_mm: report.bound.distance_mm.context(known)?,
-        peak_force_n: report.grip.peak_force_n.context(known)?,
-        bound_peak_force_n: report.bound.peak_force_n.context(known)?,
-        needed_force_n: report.grip.needed_force_n.unwrap_or(0.0),
+        figures: Figures {
+            distance_mm: report.slip.distance_mm.context(known)?,
+            bound_distance_mm: report.bound.distance_mm.context(known)?,
+            peak_force_n: report.grip.peak_force_n.context(known)?,
+            bound_peak_force_n: report.bound.peak_force_n.context(known)?,
+            needed_force_n: report.grip.needed_force_n.unwrap_or(0.0),
+        },
     })
 }
 
@@ -106,21 +108,26 @@ pub fn rows(tries: &[Try]) -> Vec<Row> {
     let row = |(task, material)| {
         let own: Vec<&Try> =
             tries.iter().filter(|own| own.task == task && own.material == material).collect();
-        let mean = |of: fn(&Try) -> f64| own.iter().map(|own| of(own)).sum::<f64>() / own.len().max(1) as f64;
+        let mean = |of: fn(&Figures) -> f64| {
+            own.iter().map(|own| of(&own.figures)).sum::<f64>() / own.len().max(1) as f64
+        };
+        let mut kept_by: BTreeMap<String, usize> = BTreeMap::new();
+        own.iter()
+            .flat_map(|own| &own.kept_by)
+            .for_each(|name| *kept_by.entry(name.clone()).or_default() += 1);
         Row {
             material,
             task,
             tries: own.len(),
             kept: own.iter().filter(|own| own.kept).count(),
-            kept_by: own.iter().flat_map(|own| &own.kept_by).fold(BTreeMap::new(), |mut all, name| {
-                *all.entry(name.clone()).or_default() += 1;
-                all
-            }),
-            distance_mm: mean(|own| own.distance_mm),
-            bound_distance_mm: mean(|own| own.bound_distance_mm),
-            peak_force_n: mean(|own| own.peak_force_n),
-            bound_peak_force_n: mean(|own| own.bound_peak_force_n),
-            needed_force_n: mean(|own| own.needed_force_n),
+            figures: Figures {
+                distance_mm: mean(|own| own.distance_mm),
+                bound_distance_mm: mean(|own| own.bound_distance_mm),
+                peak_force_n: mean(|own| own.peak_force_n),
+                bound_peak_force_n: mean(|own| own.bound_peak_force_n),
+                needed_force_n: mean(|own| own.needed_force_n),
+            },
+            kept_by,
         }
     };
     all.map(row).collect()

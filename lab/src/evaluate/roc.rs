@@ -1,15 +1,14 @@
-//! Operating points: what a network makes of pours at every threshold, so that none of them has to be believed alone.
+//! Operating points: the scores of pours at every threshold.
 
 use rayon::prelude::*;
 use serde::Serialize;
-
 use tenax_sim::array::Verdicts;
 use tenax_sim::array::pour::{Pour, pour};
 use tenax_sim::array::real::{Logits, auc};
 use tenax_sim::labelled::Recording;
 use tenax_sim::scorer::Doing;
 
-/// False steps in 2800 at which the curve has its points.
+/// False steps in 2800 at the curve's points.
 const FALSE_2800: [f64; 14] =
     [0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 36.0, 60.0, 100.0, 150.0, 200.0, 300.0, 450.0, 700.0];
 
@@ -17,16 +16,13 @@ const FALSE_2800: [f64; 14] =
 pub struct Point {
     /// Slip is a logit of at least this.
     pub logit: i32,
-    /// Part of the slipping steps that is called slip: recall.
     pub recall: f64,
-    /// Part of the steps that are called slip that is: precision.
     pub precision: f64,
     pub balanced: f64,
-    /// Missed steps in 2800.
+    /// Missed and false steps in 2800.
     pub missed_2800: f64,
-    /// False ones.
     pub false_2800: f64,
-    /// Part of the slips that a detection began in by 50 ms after macro onset.
+    /// Part of the slips with a detection by 50 ms after macro onset.
     pub caught_50ms: f64,
     /// Detections that belong to no slip, an hour.
     pub false_per_hour: f64,
@@ -36,16 +32,15 @@ pub struct Point {
 pub struct Roc {
     /// Probability that a step that slips has a higher logit than one that does not.
     pub auc: f64,
-    /// Mean precision over all recalls; who guesses has the prevalence.
+    /// Mean precision over all recalls; guessing has the prevalence.
     pub average_precision: f64,
-    /// The point with the best balanced accuracy.
     pub best_balanced: Point,
     /// By rising false steps.
     pub points: Vec<Point>,
 }
 
 impl Roc {
-    /// Of the pours. None where nothing slips in them, or everything does.
+    /// None where no step of the pours slips, or every one does.
     pub fn of(recordings: &[Recording], logits: &[Logits]) -> Option<Self> {
         let pours: Vec<(&Recording, &Logits)> =
             recordings.iter().zip(logits).filter(|(own, _)| own.doing == Doing::Pour).collect();

@@ -1,15 +1,14 @@
 //! A fingertip on the host that goes from one world to the next and keeps what it has learned.
 
-use anyhow::{Context, anyhow};
+use anyhow::Context;
 use tenax_hal_shim::channel::{FRAMES_PER_SLOW_FRAME, PVDF_COUNT, SLOW_HZ};
 use tenax_hal_shim::detector::{DetectorId, DetectorSet};
 use tenax_hal_shim::motor::MotorDrive;
-use tenax_hal_shim::wire::{Down, NETWORK_OUTPUTS, NetworkState, RECEPTORS, Setting, Slow};
+use tenax_hal_shim::wire::{Down, Setting, Slow};
 use tenax_hal_shim::words;
 use tenax_logic::detectors::Said;
 use tenax_logic::fingertip::Fingertip;
-use tenax_logic::hebbian::network::Weight;
-use tenax_logic::hebbian::{self, FingertipNetwork, Normaliser, snapshot};
+use tenax_logic::hebbian::{self, FingertipNetwork, snapshot};
 use tenax_logic::setting::SettingId;
 use tenax_scene::World;
 use tenax_scene::plant::Plant;
@@ -19,26 +18,21 @@ use super::control::Control;
 use super::trial::{Setup, Trial, by_network};
 use tenax_sim::board::simulated::Ahead;
 
-/// Who says that the object slips, for the reflex to answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Judge {
     /// The fingertip's own detectors; the scenes silence all but the network.
     Touch,
     /// The camera's v1, as it comes over the line, and nothing else.
     Vision,
-    /// Nobody: the world's plan holds with the least force. The same gripper cannot do better.
+    /// The world's plan holds with the least force.
     Bound,
 }
-
-/// What a fingertip has learned: maxima, weights, the ratio of slip.
-type Kept = (Normaliser<RECEPTORS>, [[Weight; RECEPTORS]; NETWORK_OUTPUTS], u32);
 
 /// The fingertip. Its line is trusted: a camera teaches over it.
 #[derive(Clone, Debug)]
 pub struct Bench {
     fingertip: Fingertip,
     frame: u32,
-    /// What the network said in the ticks of the last slow frame.
     said: Vec<Said>,
 }
 
@@ -49,14 +43,8 @@ impl Default for Bench {
 }
 
 impl Bench {
-    /// Goes through a world to its end. `see` is shown every slow frame: its number in this world, what it tells, and what
-    /// the network knows and feels after it.
-    pub fn run(&mut self, world: World, judge: Judge, see: &mut dyn FnMut(usize, &Slow, &Self)) -> World {
-        self.run_for(f64::INFINITY, world, judge, see)
-    }
-
-    /// The same, for so long at most, s.
-    fn run_for(
+    /// Goes through a world for so long at most, s. `see` gets every slow frame with its number in this world.
+    pub fn run(
         &mut self,
         for_s: f64,
         mut world: World,
@@ -112,37 +100,28 @@ impl Bench {
     pub fn trial_for(&mut self, for_s: f64, setup: Setup) -> Trial {
         let mut trial = Trial { lift_s: setup.lift_s, ..Trial::default() };
         let for_s = setup.lift_s + for_s;
-        let world = self.run_for(for_s, setup.world, Judge::Touch, &mut |n, slow, bench| {
+        let world = self.run(for_s, setup.world, Judge::Touch, &mut |n, slow, bench| {
             trial.hear(n, slow, &bench.said);
         });
-        trial.end(world.truth().clone());
+        trial.truth = world.truth().clone();
         trial
     }
 
-    /// What it has learned: maxima, weights, the ratio of slip.
-    fn kept(&self) -> anyhow::Result<Kept> {
-        let mut bytes = [0; hebbian::SNAPSHOT_LENGTH];
-        let learned = self.fingertip.learned();
-        let kept = learned.write(&mut bytes).context("a snapshot of another length")?;
-        let (normaliser, network, more) =
-            snapshot::restore(&hebbian::NORMALISER, kept).context("a damaged snapshot")?;
-        Ok((normaliser, network.weights(), more))
-    }
-
-    /// What it has learned, as the board keeps it. Fails by a bug alone.
+    /// The learned state, as the board keeps it. Fails by a bug alone.
     pub fn snapshot(&self) -> anyhow::Result<Vec<u8>> {
         let mut bytes = [0; hebbian::SNAPSHOT_LENGTH];
         let kept = self.fingertip.learned();
         Ok(kept.write(&mut bytes).context("a snapshot of another length")?.to_vec())
     }
 
-    /// The same fingertip as a control has it: something of what was learned is changed; nothing, if there is none. Either way it is
-    /// switched off and on in between. Fails by a bug alone: what was learned can be restored.
-    pub fn controlled(&self, control: Option<Control>) -> anyhow::Result<Self> {
-        let (normaliser, mut weights, more) = self.kept()?;
+    /// A copy with something of its learning changed, switched off and on. Fails by a bug alone.
+    pub fn controlled(&self, control: Control) -> anyhow::Result<Self> {
+        let kept = self.snapshot()?;
+        let (normaliser, network, more) =
+            snapshot::restore(&hebbian::NORMALISER, &kept).context("a damaged snapshot")?;
+        let mut weights = network.weights();
         let films = &mut weights[0][..PVDF_COUNT];
-        let maxima = &normaliser.maxima()[..PVDF_COUNT];
-        let more = control.map_or(more, |control| control.change(films, maxima, more));
+        let more = control.change(films, more);
         let changed = FingertipNetwork::from_weights(&weights);
         let mut bytes = [0; hebbian::SNAPSHOT_LENGTH];
         let kept = snapshot::save(&normaliser, &changed, more, &mut bytes);
@@ -152,12 +131,7 @@ impl Bench {
         Ok(other)
     }
 
-    /// What the network said in the ticks of the last slow frame.
     pub fn said(&self) -> &[Said] {
         &self.said
-    }
-
-    pub fn network(&self) -> NetworkState {
-        self.fingertip.network()
     }
 }

@@ -33,7 +33,7 @@ impl Chain {
         Self { setups, now: 0, left }
     }
 
-    /// What a board said in each, and what was true. `host` is what the host's logic said to the same codes: it tells slip from a
+    /// The trials as the board ran them. `host` has the reports of the host's logic to the same codes: it tells slip from a
     /// warning, which the line does not, and is the board's own where the two agree.
     pub fn trials(self, run: &Run, host: &Said) -> Vec<Trial> {
         let mut slows = run.slows.iter().peekable();
@@ -48,7 +48,7 @@ impl Chain {
                 let said: Vec<_> = ticks.map(|&sets| by_network(sets)).collect();
                 trial.hear(place(slow.frame) - begins, slow, &said);
             }
-            trial.end(setup.world.truth().clone());
+            trial.truth = setup.world.truth().clone();
             begins = ends;
             trial
         };

@@ -7,7 +7,7 @@ use tenax_scene::{SceneFile, builtin};
 
 /// Standard gravity, m/s^2.
 const GRAVITY_M_S2: f64 = 9.80665;
-/// What the fingers must press the block of the scene file with, so that it stops sliding, N: `m g / (2 mu_d)`.
+/// Force at which the block of the scene file stops sliding, N: `m g / (2 mu_d)`.
 const NEEDED_N: f64 = 0.2 * GRAVITY_M_S2 / (2.0 * 0.46);
 
 /// Friction of the plain finger: sliding keeps 0.65 of it, and a patch of it holds 0.69 of its load, both as the recorded finger
@@ -17,7 +17,7 @@ const PLAIN_MU_D: f64 = 0.65 * PLAIN_MU_S;
 /// Its block: as heavy as needs the force of the scene file's.
 const PLAIN_KG: f64 = NEEDED_N * 2.0 * PLAIN_MU_D / GRAVITY_M_S2;
 
-/// How far the mains may be from its frequency, Hz: what EN 50160 allows 99.5 % of the year.
+/// Deviation of the mains' frequency, Hz: EN 50160's limit for 99.5 % of the year.
 const OFF_HZ: f64 = 0.5;
 
 /// A change of a number of a scene file: where (`contact.mu_s`, `move.0.at_s`), and to what.
@@ -31,7 +31,7 @@ pub struct Finger {
     mu_s: f64,
     mu_d: f64,
     mass_kg: f64,
-    /// What it needs to be pressed with over what the scene file's block does.
+    /// Force that its object needs, times that of the scene file's block.
     force: f64,
     changes: Vec<Change>,
 }
@@ -88,19 +88,13 @@ impl Finger {
         }
     }
 
-    /// What sliding keeps of static friction.
     pub fn ratio(&self) -> f64 {
         self.mu_d / self.mu_s
     }
 
-    /// The scene of this name with this finger and its object, which differs by chance from one time to the next: friction
-    /// and mass by up to 3 %, the first grip by 5 %. Fails if the scene does not become one with these numbers.
-    pub fn scene(&self, name: &str, seed: u64, more: &[Change]) -> anyhow::Result<SceneFile> {
-        self.edited_scene(name, seed, more, |_| ())
-    }
-
-    /// The same, and whatever else `edit` does to the file. Fails if the scene does not become one with these numbers.
-    pub fn edited_scene(
+    /// The scene of this name with this finger and its object, edited. Friction and mass differ by up to 3 %, the first grip by 5 %, from
+    /// one seed to the next. Fails if the scene does not become one with these numbers.
+    pub fn scene(
         &self,
         name: &str,
         seed: u64,
@@ -129,7 +123,6 @@ impl Finger {
         Ok(SceneFile::parse(&toml::to_string(&scene)?, name)?)
     }
 
-    /// Its friction, static and dynamic.
     pub const fn friction(&self) -> [f64; 2] {
         [self.mu_s, self.mu_d]
     }
@@ -143,7 +136,6 @@ impl Finger {
         }
     }
 
-    /// The same finger with one more number of its scenes changed.
     pub fn with(mut self, change: Change) -> Self {
         self.changes.retain(|(place, _)| *place != change.0);
         self.changes.push(change);
@@ -155,22 +147,15 @@ impl Finger {
         self.mass_kg
     }
 
-    /// How long the fingers close at 36 mm/s until they press the object with so many times what it needs, s: they have 1 mm
+    /// Time of closing at 36 mm/s until the fingers press the object with so many times its need, s: they have 1 mm
     /// each to go, and press 0.3 N for each mm after that.
     pub fn closing_s(&self, times: f64) -> f64 {
         (2.0 + times * self.force * NEEDED_N / 0.3) / 36.0
     }
 
-    /// What the object needs, over what that of the scene files does.
     pub const fn force(&self) -> f64 {
         self.force
     }
-}
-
-/// Puts these in the place of all entries of one kind.
-pub fn edited(scene: &mut toml::Table, kind: &str, entries: Vec<toml::Table>) {
-    let entries: Vec<toml::Value> = entries.into_iter().map(Into::into).collect();
-    scene.insert(kind.to_owned(), entries.into());
 }
 
 /// Sets a number: of a table (`contact.mu_s`), of an entry of a list (`move.0.at_s`), or of the first or second command

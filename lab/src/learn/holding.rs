@@ -8,22 +8,22 @@ use rayon::prelude::*;
 use tenax_scene::{SceneFile, Seeds, World};
 
 use super::bench::{Bench, Judge};
-use super::finger::{Finger, edited};
+use super::finger::Finger;
 use super::trial::{Trial, Word};
+use crate::dataset::story::entry;
 use tenax_sim::report::fate;
 use tenax_sim::scorer::{Card, Doing, Stretch};
 
 const SCENE: &str = "hold";
 /// The block is in the air and the hand still, s.
 pub const FROM_S: f64 = 4.0;
-/// What happens in a minute, and how often.
 const KNOCKS: u32 = 6;
 const SWINGS: u32 = 2;
 const RUNS: u32 = 2;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Holding {
-    /// How long nothing slipped, h.
+    /// Time without slip, h.
     pub hours: f64,
     /// False alarms of slip, or of a warning.
     pub any: False,
@@ -37,7 +37,6 @@ pub struct Holding {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct False {
     pub count: u32,
-    /// Those of them in micro slip that came to nothing: right about the contact, wrong about the object.
     pub in_micro_slip: u32,
 }
 
@@ -91,8 +90,9 @@ fn one(finger: &Finger, learned: &Bench, seed: u64) -> anyhow::Result<Holding> {
     let mut bench = learned.clone();
     let mut trial = Trial::default();
     let world = World::seeded(&scene, Seeds { making: finger.making, noise: seed });
-    let world = bench.run(world, Judge::Touch, &mut |n, slow, bench| trial.hear(n, slow, bench.said()));
-    trial.end(world.truth().clone());
+    let world = bench
+        .run(f64::INFINITY, world, Judge::Touch, &mut |n, slow, bench| trial.hear(n, slow, bench.said()));
+    trial.truth = world.truth().clone();
     let held = Stretch { from_s: FROM_S, to_s: scene.duration_s(), doing: Doing::Hold };
     let false_of = |word| False::of(word, &trial, held);
     let slips = &trial.truth.slips;
@@ -119,7 +119,7 @@ pub fn minute(finger: &Finger, seed: u64, disturbed: bool) -> anyhow::Result<Sce
     let at_s = |n: u32, within: f64| FROM_S + 1.0 + slot_s * (f64::from(places[n as usize]) + within);
     let mut knocks = Vec::new();
     for n in 0..KNOCKS {
-        knocks.push(table(&[
+        knocks.push(entry(&[
             ("at_s", at_s(n, between(0.0, 0.5))),
             ("peak_mv", 2.0 * (between(0.0, 40.0_f64.ln())).exp()),
             // Frames and tools ring from 50 Hz to 2 kHz for 1 to 30 ms; where it comes from decides which films hear it.
@@ -130,7 +130,7 @@ pub fn minute(finger: &Finger, seed: u64, disturbed: bool) -> anyhow::Result<Sce
     }
     let mut swings = Vec::new();
     for n in KNOCKS..KNOCKS + SWINGS {
-        let mut swing = table(&[
+        let mut swing = entry(&[
             ("at_s", at_s(n, 0.0)),
             ("rate_hz", between(0.8, 1.5)),
             ("peak_m_s2", between(1.0, 3.0)),
@@ -140,27 +140,23 @@ pub fn minute(finger: &Finger, seed: u64, disturbed: bool) -> anyhow::Result<Sce
     }
     let mut runs = Vec::new();
     for n in KNOCKS + SWINGS..count {
-        let mut run = table(&[("at_s", at_s(n, between(0.0, 0.5))), ("for_s", between(0.02, 0.1))]);
+        let mut run = entry(&[("at_s", at_s(n, between(0.0, 0.5))), ("for_s", between(0.02, 0.1))]);
         run.insert("kind".to_owned(), "close".into());
         run.insert("duty_permille".to_owned(), (between(100.0, 300.0) as i64).into());
         runs.push(run);
     }
-    finger.edited_scene(
-        SCENE,
-        seed,
-        &[("command.grip.for_s", (2.0 + 16.7 * finger.force()) / 24.0)],
-        |scene| {
-            edited(scene, "knock", if disturbed { knocks } else { Vec::new() });
-            edited(scene, "swing", if disturbed { swings } else { Vec::new() });
-            let commands = scene.get_mut("command").and_then(toml::Value::as_array_mut);
-            if let Some(commands) = commands {
-                commands.truncate(2);
-                commands.extend(runs.into_iter().filter(|_| disturbed).map(Into::into));
-            }
-        },
-    )
-}
-
-fn table(numbers: &[(&str, f64)]) -> toml::Table {
-    numbers.iter().map(|(key, value)| ((*key).to_owned(), (*value).into())).collect()
+    finger.scene(SCENE, seed, &[("command.grip.for_s", (2.0 + 16.7 * finger.force()) / 24.0)], |scene| {
+        for (kind, mut entries) in [("knock", knocks), ("swing", swings)] {
+            entries.retain(|_| disturbed);
+            scene.insert(
+                kind.to_owned(),
+                entries.into_iter().map(toml::Value::from).collect::<Vec<_>>().into(),
+            );
+        }
+        let commands = scene.get_mut("command").and_then(toml::Value::as_array_mut);
+        if let Some(commands) = commands {
+            commands.truncate(2);
+            commands.extend(runs.into_iter().filter(|_| disturbed).map(Into::into));
+        }
+    })
 }

@@ -1,4 +1,4 @@
-//! What the network is worth to the hand (Tada 2006, section III-D): a lift that the reflex secures and a cup that it keeps,
+//! Benefit of the network to the hand (Tada 2006, section III-D): a lift that the reflex secures and a cup that it keeps,
 //! told by the network, by the camera, and by the bound.
 
 use rayon::prelude::*;
@@ -8,16 +8,15 @@ use tenax_scene::{Seeds, World};
 use super::bench::{Bench, Judge};
 use super::finger::{Change, Finger};
 
-/// Who is tried, in this order wherever there are three.
 pub const JUDGES: [Judge; 3] = [Judge::Touch, Judge::Vision, Judge::Bound];
 
 /// When the lift begins, s, without what chance adds.
 const LIFT_S: f64 = 1.2;
-/// What chance adds at most, s: three of the camera's images.
+/// Largest random delay, s: three of the camera's images.
 const LATER_S: f64 = 0.1;
 /// When the pour begins, s.
 const POUR_S: f64 = 4.0;
-/// What moves more slowly along the hand than this is secured, mm/s: the scenes' floor of slip.
+/// Speed along the hand below which the object is secured, mm/s: the scenes' floor of slip.
 const FLOOR_MM_S: f64 = 1.0;
 
 #[derive(Clone, Debug, Default)]
@@ -26,9 +25,9 @@ pub struct Reflexed {
     pub sunk_mm: Vec<(f64, f64)>,
     /// When it last moved along the hand, s from the beginning of the lift.
     pub secured_s: f64,
-    /// How far it had sunk in the end, mm. What the skin gives under the load is in it.
+    /// Sunk in the end, mm, with the skin's give under the load.
     pub distance_mm: f64,
-    /// What each finger pressed with in the end, N.
+    /// Force of each finger in the end, N.
     pub grip_n: f64,
     pub dropped: bool,
 }
@@ -73,11 +72,11 @@ fn three(
     changes: &[Change],
     from_s: f64,
 ) -> anyhow::Result<Three> {
-    let scene = finger.scene(scene, seed, changes)?;
+    let scene = finger.scene(scene, seed, changes, |_| ())?;
     let run = |judge| {
         let world = World::seeded(&scene, Seeds { making: finger.making, noise: seed });
         let world = if judge == Judge::Bound { world.planning(Plan::of(&scene)) } else { world };
-        reflexed(&learned.clone().run(world, judge, &mut |_, _, _| ()), from_s)
+        reflexed(&learned.clone().run(f64::INFINITY, world, judge, &mut |_, _, _| ()), from_s)
     };
     Ok(JUDGES.map(run))
 }

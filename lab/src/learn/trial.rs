@@ -48,8 +48,8 @@ impl Setup {
         Self::changed(finger, seed, false, &grip)
     }
 
-    /// The same with some numbers of its scene changed. Fails if the scene cannot be made.
-    pub fn changed(finger: &Finger, seed: u64, lesson: bool, more: &[Change]) -> anyhow::Result<Self> {
+    /// A trial with some numbers of its scene changed. Fails if the scene cannot be made.
+    fn changed(finger: &Finger, seed: u64, lesson: bool, more: &[Change]) -> anyhow::Result<Self> {
         let (scene, lift_s) = Self::scene(finger, seed, lesson, more)?;
         Ok(Self { world: World::seeded(&scene, Seeds { making: finger.making, noise: seed }), lift_s })
     }
@@ -64,7 +64,7 @@ impl Setup {
         let lift_s = LIFT_S + ChaCha8Rng::seed_from_u64(seed).random_range(0.0..LATER_S);
         let mut changes = vec![("move.0.at_s", lift_s)];
         changes.extend_from_slice(more);
-        let scene = finger.edited_scene(SCENE, seed, &changes, |scene| {
+        let scene = finger.scene(SCENE, seed, &changes, |scene| {
             if let Some(camera) = scene.get_mut("camera").and_then(toml::Value::as_table_mut) {
                 camera.insert("teaches".to_owned(), lesson.into());
             }
@@ -73,7 +73,6 @@ impl Setup {
     }
 }
 
-/// How much more than it needs an object is lifted with: what people (1.2 to 2) and those with a prosthesis do.
 const SAFE_FORCE: Range<f64> = 1.5..3.0;
 
 /// Which words of the network's are listened to.
@@ -97,7 +96,6 @@ impl Word {
     }
 }
 
-/// What the network said in a tick, of the detectors that say slip and of those that warn.
 pub const fn by_network([slip, warning]: [DetectorSet; 2]) -> Said {
     Said { slip: slip.contains(DetectorId::Hebbian), incipient: warning.contains(DetectorId::Hebbian) }
 }
@@ -107,11 +105,9 @@ pub const fn by_network([slip, warning]: [DetectorSet; 2]) -> Said {
 pub struct Trial {
     /// When the arm began to lift, s.
     pub lift_s: f64,
-    /// What the network said in each tick, from the first.
     pub outputs: Vec<[i8; 2]>,
     /// Whether that meant slip, and whether it was warned of.
     pub said: Vec<Said>,
-    /// What was true, and what the camera said.
     pub truth: Truth,
 }
 
@@ -123,11 +119,6 @@ impl Trial {
         self.said.resize(n * ticks, Said::NOTHING);
         self.outputs.extend(slow.ticks.iter().map(|tick| tick.outputs));
         self.said.extend(said);
-    }
-
-    /// It is over; this was true.
-    pub fn end(&mut self, truth: Truth) {
-        self.truth = truth;
     }
 
     /// When a tick ran, s.
@@ -180,35 +171,15 @@ impl Trial {
         Card::of(&fate::spans(&self.truth), &self.verdicts(word), &[whole])
     }
 
-    /// When the camera's first v1 = -1 after that came over the line, s.
-    pub fn vision_s(&self) -> Option<f64> {
-        Some(self.first_seen()?.arrives_s)
-    }
-
-    /// When the second of its images was taken, s: a camera without delay had said it then.
-    pub fn vision_without_delay_s(&self) -> Option<f64> {
-        Some(self.first_seen()?.t_s)
-    }
-
-    fn first_seen(&self) -> Option<&Seen> {
+    /// The camera's first v1 = -1 after the lift began.
+    pub fn first_seen(&self) -> Option<&Seen> {
         self.truth.camera.iter().find(|seen| seen.v1 < 0 && seen.t_s > self.lift_s)
     }
 
-    /// Ticks between two instants.
-    pub fn ticks(&self, span_s: Range<f64>) -> Range<usize> {
-        let tick = |t_s: f64| ((t_s * f64::from(FRAME_HZ)) as usize).min(self.outputs.len());
-        tick(span_s.start)..tick(span_s.end)
-    }
-
-    /// What o2 said of the direction in a slip, the mean of it, -1 to 1.
+    /// The mean direction of o2 in a slip, -1 to 1.
     pub fn direction(&self, slip: &Slip) -> f64 {
-        let ticks = self.ticks(slip.macro_onset_s..slip.end_s.unwrap_or(f64::INFINITY));
-        let said = &self.outputs[ticks];
+        let tick = |t_s: f64| ((t_s * f64::from(FRAME_HZ)) as usize).min(self.outputs.len());
+        let said = &self.outputs[tick(slip.macro_onset_s)..tick(slip.end_s.unwrap_or(f64::INFINITY))];
         said.iter().map(|outputs| f64::from(outputs[1])).sum::<f64>() / (128.0 * said.len().max(1) as f64)
-    }
-
-    /// Whether this was said where nothing slipped.
-    pub fn false_alarm(&self, word: Word) -> bool {
-        self.card(word).false_alarms.count > 0
     }
 }

@@ -5,7 +5,6 @@ use tenax_hal_shim::channel::{FRAMES_PER_SLOW_FRAME, mv_from_sample, sample_from
 use tenax_logic::photoelastic::HeadConfig;
 use tenax_logic::photoelastic::curve::{Curve, HALF_TURN, KNOTS, phase_of};
 use tenax_logic::photoelastic::split::Q;
-use tenax_logic::setting::SettingId;
 use tenax_scene::Seeds;
 use tenax_scene::sensor::photoelastic::curve::{Day, Making, receiver_mv};
 use tenax_scene::sensor::photoelastic::optics::Layer;
@@ -20,23 +19,21 @@ const FINE: (f64, f64) = (20.0, 2.0);
 const STEP: f64 = 10.0;
 /// The ac part of slip is so many times the largest that was read while nothing slipped.
 const SLIP_TIMES: i32 = 2;
-/// Cycles that are read of each.
 const CYCLES: usize = 40;
 
 /// One weight, and what was read under it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Weighed {
     pub force_n: f64,
-    /// What the pin has, mV.
+    /// Voltage at the pin, mV.
     pub level_mv: f64,
-    /// What the calibrated curve makes of that, N.
+    /// Reading by the calibrated curve, N.
     pub read_n: f64,
 }
 
 /// A calibration, and how well it fits.
 #[derive(Clone, Debug)]
 pub struct Calibration {
-    /// For the head.
     pub curve: Curve,
     /// Every weight up to the curve's end.
     pub weighed: Vec<Weighed>,
@@ -45,25 +42,6 @@ pub struct Calibration {
 }
 
 impl Calibration {
-    /// The settings that bring it to a board, with their values.
-    pub fn settings(&self) -> Vec<(SettingId, i32)> {
-        use SettingId as Id;
-        let mv = |level_q4: i32| mv_from_sample((level_q4 >> 4) as u16) as i32;
-        let forces = [
-            Id::HeadForce1,
-            Id::HeadForce2,
-            Id::HeadForce3,
-            Id::HeadForce4,
-            Id::HeadForce5,
-            Id::HeadForce6,
-            Id::HeadForce7,
-            Id::HeadForce8,
-        ];
-        let levels = [(Id::HeadDark, mv(self.curve.dark_q4)), (Id::HeadBright, mv(self.curve.bright_q4))];
-        let slip = self.slip_mv.map(|mv| (Id::HeadSlip, mv.into()));
-        levels.into_iter().chain(forces.into_iter().zip(self.curve.force_mn)).chain(slip).collect()
-    }
-
     /// The configuration of a head with this calibration.
     pub fn config(&self) -> HeadConfig {
         let mean = mean_head();

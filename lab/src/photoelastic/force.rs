@@ -1,9 +1,8 @@
-//! How well the force is followed: ramps of up to 6 N/s that turn anywhere, the peak of the curve included, without shear and with the
+//! Errors of the followed force: ramps of up to 6 N/s that turn anywhere, the peak of the curve included, without shear and with the
 //! shear that a held object has.
 
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
-use tenax_logic::photoelastic::Head;
 use tenax_logic::photoelastic::track::{Branch, Hints, SHEAR_MAX_PERMILLE, Track};
 use tenax_scene::Seeds;
 use tenax_scene::sensor::photoelastic::curve::{Day, Making, receiver_mv};
@@ -24,9 +23,9 @@ const AT_THE_PEAK_N: f64 = 0.06;
 pub struct Point {
     pub t_s: f64,
     pub true_n: f64,
-    /// What was read, None while nothing is known.
+    /// The reading, None while there is none.
     pub read_n: Option<f64>,
-    /// How far off it may be, N.
+    /// Its uncertainty, N.
     pub uncertainty_n: f64,
     /// The least and the most that it can be, N: what stands in for a force sensor's normal force, and for its load.
     pub range_n: (f64, f64),
@@ -48,7 +47,6 @@ pub struct Story {
 
 /// Part of the way in which the shear changes with the force; the rest comes while the force stays, as in a lift.
 const SHEARED_ON_THE_WAY: f64 = 0.5;
-/// How long a lift takes, cycles: shortest and longest.
 const LIFT_CYCLES: (f64, f64) = (8.0, 80.0);
 
 impl Story {
@@ -71,7 +69,6 @@ impl Story {
         Self { steps, shears: Vec::new() }
     }
 
-    /// The same, of an object that is lifted, swung and set down meanwhile: at each target its shear is another one.
     pub fn sheared(mut self, random: &mut ChaCha8Rng) -> Self {
         let most = f64::from(SHEAR_MAX_PERMILLE) / 1e3;
         self.shears = self.steps.iter().map(|_| between(random, 0.0, most)).collect();
@@ -108,16 +105,16 @@ impl Story {
 pub struct Session {
     making: Making,
     day: Day,
-    /// Where its light is brightest today, N: frozen birefringence moves it.
+    /// Force of the brightest light today, N: frozen birefringence moves it.
     peak_n: f64,
-    /// Where it is back at its first value, N.
+    /// Force at which the light is back at its first value, N.
     end_n: f64,
     bench: Bench,
     noise: ChaCha8Rng,
 }
 
 impl Session {
-    /// Of a head and a day drawn with this seed. A hand has gripped once over the peak with it since it was switched on.
+    /// A head and a day drawn with this seed, after one grip over the peak.
     pub fn new(seed: u64) -> Self {
         let seeds = Seeds { making: seed, noise: seed };
         let making = Making::drawn(seeds, 0.2);
@@ -142,24 +139,6 @@ impl Session {
         }
         session.rest();
         session
-    }
-
-    pub const fn making(&self) -> &Making {
-        &self.making
-    }
-
-    /// Where its light is brightest today, N.
-    pub const fn peak_n(&self) -> f64 {
-        self.peak_n
-    }
-
-    /// The logic that reads it.
-    pub const fn head(&self) -> &Head {
-        &self.bench.head
-    }
-
-    pub const fn day(&self) -> &Day {
-        &self.day
     }
 
     /// A second in an open hand.
@@ -223,7 +202,6 @@ impl Session {
 
 const FULL_SCALE_N: f64 = 6.0;
 
-/// What many runs come to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct Score {
     /// Root mean square of the error where the head says that it is certain, % of 6 N.
@@ -271,7 +249,6 @@ impl Score {
     }
 }
 
-/// As many sessions as there are seeds, each with as many stories, sheared or not.
 pub fn sessions(seeds: impl IntoIterator<Item = u64>, stories: usize, sheared: bool) -> Vec<Vec<Point>> {
     let mut runs = Vec::new();
     for seed in seeds {

@@ -1,7 +1,8 @@
-//! How fast it slips: amplitude and frequency of a block that is drawn over the head, and the fit of both.
+//! Slip rate: amplitude and frequency of a block that is drawn over the head, and the fit of both.
 
 use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
+use tenax_frames::quantile::middle;
 use tenax_logic::photoelastic::rate::RateFit;
 use tenax_logic::photoelastic::split::Q;
 use tenax_logic::photoelastic::track::Hints;
@@ -11,7 +12,6 @@ use tenax_scene::physics::stribeck::{METAL, PLASTIC, Slider, Stribeck};
 use tenax_scene::sensor::photoelastic::curve::{Day, Making};
 use tenax_scene::sensor::photoelastic::optics::Layer;
 use tenax_scene::sensor::photoelastic::{Head, drawn_strip};
-use tenax_frames::quantile::middle;
 
 use super::balance;
 use super::bench::{Bench, between, over_decades};
@@ -33,7 +33,6 @@ pub enum Material {
 impl Material {
     pub const ALL: [Self; 2] = [Self::Aluminium, Self::Plastic];
 
-    /// For a person.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Aluminium => "aluminium",
@@ -41,7 +40,6 @@ impl Material {
         }
     }
 
-    /// Of the material on the strip.
     pub const fn friction(self) -> Stribeck {
         match self {
             Self::Aluminium => METAL,
@@ -57,16 +55,15 @@ pub struct Rig {
     pub bench: Bench,
 }
 
-/// What is seen of a slip that goes on.
 #[derive(Clone, Copy, Debug)]
 pub struct Seen {
-    /// How fast it is drawn, mm/s.
+    /// True rate, mm/s.
     pub rate_mm_s: f64,
     /// Mean size of the ac part, mV.
     pub amplitude_mv: f64,
     /// Its frequency, Hz; 0 if nothing swings.
     pub hz: f64,
-    /// What a rate is told by (amplitude, period, force), None if nothing swings.
+    /// Amplitude, period and force, None if nothing swings.
     pub swing: Option<(i32, u16, i32)>,
     /// The part of the cycles in which slip was said.
     pub said: f64,
@@ -124,7 +121,6 @@ impl Rig {
         }
     }
 
-    /// Nothing slides.
     fn still(&mut self, normal_n: f64, cycles: usize, hints: Hints) {
         let touch = Touch { normal_n, sticks: true, ..Touch::default() };
         for _ in 0..cycles {
@@ -179,7 +175,7 @@ pub fn fit<'a>(slips: impl IntoIterator<Item = &'a Seen>) -> RateFit {
     RateFit { constant, amplitude, frequency, force }
 }
 
-/// How far off each rate is, %.
+/// Error of each rate, %.
 pub fn errors_percent(fit: &RateFit, slips: &[Seen]) -> Vec<f64> {
     let error = |seen: &Seen| {
         let (amplitude, period_q4, force_mn) = seen.swing?;

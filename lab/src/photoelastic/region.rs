@@ -1,4 +1,4 @@
-//! Where the strip vibrates by itself, by theory and by measurement, and where the head says slip.
+//! The region of self-excited vibration, by theory and by measurement, and that of reported slip.
 
 use tenax_scene::physics::stribeck::{BLOCK_N, METAL, Slider, Stribeck};
 use tenax_scene::sensor::photoelastic::HEAD_STRIP;
@@ -8,7 +8,6 @@ use super::rate::{Material, Rig, rig_of};
 
 /// The load: the weight of the aluminium block, N.
 pub const LOAD_N: f64 = BLOCK_N;
-/// How much friction falls altogether, as coefficients.
 const DROPS: [f64; 9] = [0.005, 0.01, 0.015, 0.02, 0.03, 0.04, 0.05, 0.07, 0.1];
 /// Slip rates of the map, mm/s.
 const RATES_MM_S: [f64; 11] = [0.05, 0.1, 0.2, 0.4, 0.7, 1.0, 1.5, 2.5, 4.0, 6.0, 9.0];
@@ -57,9 +56,9 @@ pub fn measured_mm_s(drop: f64) -> Option<f64> {
 
 #[derive(Clone, Copy, Debug)]
 pub struct Point {
-    /// How fast it slides, mm/s.
+    /// Slip rate, mm/s.
     pub rate_mm_s: f64,
-    /// How steeply friction falls at rest, s/m.
+    /// Fall of friction at rest, s/m.
     pub steepness_s_m: f64,
     /// Whether the head says slip.
     pub seen: bool,

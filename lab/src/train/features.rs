@@ -1,7 +1,5 @@
-//! What the network sees of a recording: the firmware's own integers.
+//! The network's inputs from a recording: the firmware's own integers.
 
-use tenax_sim::labelled::{Part, Recording};
-use tenax_sim::scorer::Doing;
 use tenax_logic::array::logarithm::Knee;
 use tenax_logic::array::past::Past;
 use tenax_logic::array::spectrum::SlidingSpectrum;
@@ -9,9 +7,10 @@ use tenax_logic::array::structure::{self, Structure};
 use tenax_logic::array::{
     BINS, COVARIANCES, ELEMENTS, FEATURES, PAPER_FEATURES, PreprocessorConfig, SPECTRUM_WINDOW,
 };
+use tenax_sim::labelled::{ArrayRecipe, Part, Recording};
+use tenax_sim::scorer::Doing;
 
-/// What features are made with.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct Recipe {
     /// A difference is to the reading so many slow frames before (equation 1: 1).
     pub lag: usize,
@@ -19,18 +18,14 @@ pub struct Recipe {
     pub window: usize,
     /// Sums in the spectrum (section 4.3: 40), or 20 or 10, which leave the upper bins 0.
     pub spectrum: usize,
-    /// Covariance below which a feature is straight, samples^2.
+    /// Covariance below which a feature is linear, samples^2.
     pub covariance_knee: u32,
     /// The same for a bin's power.
     pub spectrum_knee: u32,
-    /// The same for a frame of a structure function.
     pub structure_knee: u32,
-    /// Whether only the paper's 76 are made: the structure functions are 0.
-    pub paper_only: bool,
 }
 
 impl Recipe {
-    /// The firmware's.
     pub const FIRMWARE: Self = Self {
         lag: 1,
         window: 10,
@@ -38,15 +33,36 @@ impl Recipe {
         covariance_knee: PreprocessorConfig::DEFAULT.covariance_knee,
         spectrum_knee: PreprocessorConfig::DEFAULT.spectrum_knee,
         structure_knee: PreprocessorConfig::DEFAULT.structure_knee,
-        paper_only: false,
     };
+
+    /// A file's recipe; the firmware's values where it has none.
+    pub fn of(recipe: &ArrayRecipe) -> Self {
+        let given = &recipe.features;
+        let frames = |frames: &Option<toml::Spanned<u8>>, default: usize| {
+            frames.as_ref().map_or(default, |frames| usize::from(*frames.get_ref()))
+        };
+        let window = frames(&given.window, Self::FIRMWARE.window);
+        Self {
+            lag: frames(&given.lag, Self::FIRMWARE.lag),
+            window,
+            // Figure 6 varies them together.
+            spectrum: match window {
+                1 => 10,
+                2..=5 => 20,
+                _ => 40,
+            },
+            covariance_knee: given.covariance_knee.unwrap_or(Self::FIRMWARE.covariance_knee),
+            spectrum_knee: given.spectrum_knee.unwrap_or(Self::FIRMWARE.spectrum_knee),
+            structure_knee: given.structure_knee.unwrap_or(Self::FIRMWARE.structure_knee),
+        }
+    }
 
     /// Readings before the first features.
     pub fn ready_after(&self) -> usize {
         (self.lag + self.window).max(self.spectrum).max(structure::READY_AFTER)
     }
 
-    /// Differences are cut at this, so that the window's sum of products fits in an `i32`: a power of two.
+    /// Bound of a difference, a power of two: the window's sum of products fits in an `i32`.
     fn d_max(&self) -> i32 {
         let most = (f64::from(i32::MAX) / self.window as f64).sqrt();
         1 << (most as u32).ilog2()
@@ -55,22 +71,17 @@ impl Recipe {
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Sequence {
-    pub name: String,
     pub session: String,
     pub material: String,
-    /// What it is for, if its file says so.
     pub part: Option<Part>,
-    /// What was done in it.
     pub doing: Doing,
     /// Features of each step from the one on with which the windows are full.
     pub features: Vec<[i16; FEATURES]>,
-    /// Whether it slipped in that step.
     pub slips: Vec<bool>,
 }
 
-/// Equations 1 to 4, the transform and the structure functions, as the firmware computes them, over a whole recording.
-///
-/// With a lag of 1 and a window of 10 it is what [`Preprocessor`](tenax_logic::array::Preprocessor) gives, bit for bit.
+/// Equations 1 to 4, the transform and the structure functions, as the firmware computes them, over a whole recording. With a lag of 1
+/// and a window of 10 they are those of [`Preprocessor`](tenax_logic::array::Preprocessor), bit for bit.
 pub fn sequence(recording: &Recording, recipe: &Recipe) -> Sequence {
     let knees = (Knee::at(recipe.covariance_knee), Knee::at(recipe.spectrum_knee));
     let structure_knees = structure::knees(recipe.structure_knee);
@@ -88,13 +99,9 @@ pub fn sequence(recording: &Recording, recipe: &Recipe) -> Sequence {
         differences.push(past.changes(recipe.lag).of.map(|change| change.clamp(-d_max, d_max - 1)));
         let new = differences[n];
         let old = n.checked_sub(recipe.window).map_or([0; ELEMENTS], |n| differences[n]);
-        let mut entries = covariance.iter_mut();
-        for row in 0..ELEMENTS {
-            for other in row..ELEMENTS {
-                if let Some(entry) = entries.next() {
-                    *entry += new[row] * new[other] - old[row] * old[other];
-                }
-            }
+        let pairs = (0..ELEMENTS).flat_map(|row| (row..ELEMENTS).map(move |other| (row, other)));
+        for (entry, (row, other)) in covariance.iter_mut().zip(pairs) {
+            *entry += new[row] * new[other] - old[row] * old[other];
         }
         if n + 1 < recipe.ready_after() {
             continue;
@@ -108,14 +115,11 @@ pub fn sequence(recording: &Recording, recipe: &Recipe) -> Sequence {
         for (feature, power) in bins.iter_mut().zip(spectrum.powers()) {
             *feature = knees.1.of(power);
         }
-        if !recipe.paper_only {
-            structure.compress(&structure_knees, structures);
-        }
+        structure.compress(&structure_knees, structures);
         features.push(row);
         slips.push(step.slip);
     }
     Sequence {
-        name: recording.name.clone(),
         session: recording.session.clone(),
         material: recording.material.clone(),
         part: recording.part,
@@ -162,29 +166,24 @@ impl Spectrum {
 pub enum Kind {
     /// The diagonal of the covariance.
     Variance,
-    /// The rest of it.
     Covariance,
     /// The spectrum of the sum.
     Bin,
-    /// The structure functions.
     Structure,
 }
 
-impl Kind {
-    /// Of a feature by its place.
-    pub fn of(feature: usize) -> Self {
-        // Row by row of the upper triangle.
-        let is_diagonal = || (0..ELEMENTS).any(|row| row * ELEMENTS + row - row * (row + 1) / 2 == feature);
-        match feature {
-            PAPER_FEATURES.. => Self::Structure,
-            COVARIANCES.. => Self::Bin,
-            _ if is_diagonal() => Self::Variance,
-            _ => Self::Covariance,
-        }
+/// The kind of a feature by its place; the covariance is its upper triangle, row by row.
+pub fn kind_of(feature: usize) -> Kind {
+    let is_diagonal = || (0..ELEMENTS).any(|row| row * ELEMENTS + row - row * (row + 1) / 2 == feature);
+    match feature {
+        PAPER_FEATURES.. => Kind::Structure,
+        COVARIANCES.. => Kind::Bin,
+        _ if is_diagonal() => Kind::Variance,
+        _ => Kind::Covariance,
     }
+}
 
-    /// Whether it says how much the elements move, rather than how they move together: what holds for other objects, too.
-    pub fn is_believed_first(self) -> bool {
-        matches!(self, Self::Variance | Self::Structure)
-    }
+/// Whether a feature says how much the elements move, rather than how they move together: that holds for other objects, too.
+pub fn is_believed_first(feature: usize) -> bool {
+    matches!(kind_of(feature), Kind::Variance | Kind::Structure)
 }

@@ -2,12 +2,13 @@
 
 use anyhow::{bail, ensure};
 use serde::Serialize;
+use tenax_logic::array::FEATURES;
 use tenax_sim::labelled::Part;
 use tenax_sim::scorer::Doing;
 
+use crate::equations;
 use crate::train::features::Sequence;
-use crate::train::linear::{Linear, logistic};
-use crate::train::network::{Learner, Network, Settings};
+use crate::train::network::{Learner, Network};
 use crate::train::score::{Aim, Judged, platt, score, threshold};
 use crate::train::table::{Standard, Table};
 
@@ -17,7 +18,6 @@ const FOLDS_MAX: usize = 5;
 /// A way to learn.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Candidate {
-    /// See [`Standard::of`].
     pub shyness: f32,
     /// Penalty of a squared weight of the logistic regression, a row.
     pub ridge: f64,
@@ -27,19 +27,52 @@ pub struct Candidate {
     pub epochs: usize,
     pub learning_rate: f64,
     pub decay: f64,
-    /// Frames seen.
-    pub look_back: usize,
 }
 
-/// What was chosen and why.
+/// For a large data set with validation sessions: quickly from random weights, with all but variances and structure functions scaled to
+/// a tenth, since the rest tells arrays apart sooner than sliding.
+pub const SHIPPED: [Candidate; 1] =
+    [Candidate { shyness: 0.1, ridge: 1e-4, warm: false, epochs: 12, learning_rate: 2e-3, decay: 1e-2 }];
+
+/// For a few objects: each begins as a logistic regression, and how far it leaves that is chosen on objects that were left out.
+pub const FEW_OBJECTS: [Candidate; 2] = [few(0.1), few(1.0)];
+
+const fn few(shyness: f32) -> Candidate {
+    Candidate { shyness, ridge: 4e-3, warm: true, epochs: 4, learning_rate: 3e-4, decay: 1e-1 }
+}
+
+/// A weighted sum of features on the common scale.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Linear {
+    pub weights: Vec<f32>,
+    pub bias: f32,
+}
+
+impl Linear {
+    /// Logistic regression; with `balanced`, rows of the rarer kind count so many times that both kinds count about alike.
+    fn logistic(table: &Table, standard: &Standard, ridge: f64, balanced: bool) -> Self {
+        let slips = table.slips.iter().filter(|&&slips| slips).count();
+        let (rare, often) = (slips.min(table.len() - slips), slips.max(table.len() - slips));
+        let times = if balanced { (often as f64 / rare.max(1) as f64).round().max(1.0) } else { 1.0 };
+        let rare_slips = slips < table.len() - slips;
+        let rows = standard.apply(table);
+        let ridge = ridge * (often as f64 + times * rare as f64);
+        let (weights, bias) = equations::logistic(FEATURES, table.len(), ridge, |n, factors| {
+            let row = &rows[n * FEATURES..][..FEATURES];
+            factors.iter_mut().zip(row).for_each(|(to, &x)| *to = x.into());
+            (table.slips[n], if table.slips[n] == rare_slips { times } else { 1.0 })
+        });
+        Self { weights: weights.into_iter().map(|weight| weight as f32).collect(), bias: bias as f32 }
+    }
+}
+
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Choice {
     pub candidate: Candidate,
     /// Passes done of the candidate's; 0 is the logistic regression itself.
     pub passes: usize,
-    /// Its score on sessions it had not seen: accuracy or balanced accuracy.
+    /// Accuracy or balanced accuracy on sessions it had not seen.
     pub unseen: f64,
-    /// The threshold that score is for.
     pub threshold: f64,
     /// Slope and intercept that turn its logit into log-odds.
     pub calibration: (f64, f64),
@@ -50,8 +83,6 @@ pub struct Choice {
 pub struct Trained {
     pub network: Network,
     pub choice: Choice,
-    /// Every candidate's best score on sessions it had not seen.
-    pub tried: Vec<(Candidate, usize, f64)>,
 }
 
 /// To learn from, and to judge by, as indices into the sequences.
@@ -63,7 +94,7 @@ struct Fold {
 /// Trains every candidate on some sessions, judges it on others, and trains the best one on all of them.
 ///
 /// If the file says what is for training and what for validation, that is kept to. If not, sessions are left out in turn.
-/// Nothing of the test part is looked at. `progress` is told which part of the work is done.
+/// The test part is not used. `progress` gets the part of the work that is done.
 /// Fails if there is too little to choose by, or the optimiser fails.
 pub fn fit(
     sequences: &[Sequence],
@@ -77,7 +108,6 @@ pub fn fit(
     // With parts given, what is judged has learned all that there is to learn from: it need not learn it again.
     let whole = folds.len() == 1 && folds[0].learn == learn;
     let mut best: Option<(Choice, Option<Network>)> = None;
-    let mut tried = Vec::new();
     let pieces = (candidates.len() * folds.len() + 1) as f64;
     for (place, &candidate) in candidates.iter().enumerate() {
         // Of each number of passes, what every fold's network says of the sessions it has not seen.
@@ -85,7 +115,7 @@ pub fn fit(
         let mut networks = vec![None; candidate.epochs + 1];
         for (n, fold) in folds.iter().enumerate() {
             let unseen = Table::of(judged_by(sequences, &fold.judge, aim));
-            run(sequences, &fold.learn, candidate, candidate.epochs, aim, seed, &mut |passes, network| {
+            run(sequences, &fold.learn, candidate, candidate.epochs, (aim, seed), &mut |passes, network| {
                 judged[passes].push(judge(network, &unseen));
                 networks[passes] = whole.then(|| network.clone());
                 let done = (place * folds.len() + n) as f64 + passes as f64 / candidate.epochs.max(1) as f64;
@@ -100,23 +130,21 @@ pub fn fit(
             }
         }
         let Some(own) = own else { continue };
-        tried.push((candidate, own.passes, own.unseen));
         if best.as_ref().is_none_or(|(best, _)| own.unseen > best.unseen) {
             best = Some((own, networks.swap_remove(own.passes)));
         }
     }
     let Some((choice, mut network)) = best else { bail!("no candidate to choose from") };
     if network.is_none() {
-        run(sequences, &learn, choice.candidate, choice.passes, aim, seed, &mut |_, now| {
+        run(sequences, &learn, choice.candidate, choice.passes, (aim, seed), &mut |_, now| {
             network = Some(now.clone())
         })?;
     }
     progress(1.0);
     let Some(network) = network else { bail!("nothing was learned") };
-    Ok(Trained { network, choice, tried })
+    Ok(Trained { network, choice })
 }
 
-/// What it is chosen by: where the aim is pours, those of them that are.
 fn judged_by<'a>(sequences: &'a [Sequence], judge: &[usize], aim: Aim) -> Vec<&'a Sequence> {
     let all = || judge.iter().map(|&n| &sequences[n]);
     let pours: Vec<&Sequence> = all().filter(|sequence| sequence.doing == Doing::Pour).collect();
@@ -163,42 +191,31 @@ fn folds(sequences: &[Sequence]) -> anyhow::Result<Vec<Fold>> {
         .collect())
 }
 
-/// Trains on some sequences, and shows the network after each pass; pass 0 is the one it begins as.
+/// Trains on some sequences, and shows the network after each pass; pass 0 is the logistic regression.
 fn run(
     sequences: &[Sequence],
     learn: &[usize],
     candidate: Candidate,
     passes: usize,
-    aim: Aim,
-    seed: u64,
+    (aim, seed): (Aim, u64),
     seen: &mut dyn FnMut(usize, &Network),
 ) -> anyhow::Result<()> {
     let table = Table::of(learn.iter().map(|&n| &sequences[n]));
-    let slips = table.labels.iter().filter(|&&label| label > 0.5).count();
+    let slips = table.slips.iter().filter(|&&slips| slips).count();
     ensure!(
         slips > 0 && slips < table.len(),
         "of {} steps to learn from {slips} slip: both kinds are needed",
         table.len()
     );
     let standard = Standard::of(&table, candidate.shyness);
-    let begin: Option<Linear> = candidate
-        .warm
-        .then(|| logistic(&table, &standard, candidate.ridge, aim == Aim::Balanced))
-        .transpose()?;
-    let settings = Settings {
-        look_back: candidate.look_back,
-        epochs: candidate.epochs,
-        learning_rate: candidate.learning_rate,
-        decay: candidate.decay,
-        balanced: aim == Aim::Balanced,
-        seed,
-    };
-    let mut learner = Learner::new(&standard, settings, begin.as_ref())?;
+    let balanced = aim == Aim::Balanced;
+    let begin = candidate.warm.then(|| Linear::logistic(&table, &standard, candidate.ridge, balanced));
+    let mut learner = Learner::new(&standard, candidate, seed, begin.as_ref())?;
     if begin.is_some() {
         seen(0, &learner.network()?);
     }
     if passes > 0 {
-        learner.learn(&table, &mut |epoch, network| {
+        learner.learn(&table, balanced, &mut |epoch, network| {
             seen(epoch + 1, network);
             epoch + 1 < passes
         })?;
@@ -206,13 +223,8 @@ fn run(
     Ok(())
 }
 
-/// What a network says of a table.
 pub fn judge(network: &Network, table: &Table) -> Judged {
-    let ready = table.ready(network.look_back());
-    Judged {
-        logits: network.logits(table),
-        slips: ready.into_iter().map(|row| table.labels[row] > 0.5).collect(),
-    }
+    Judged { logits: network.logits(table), slips: table.slips.clone() }
 }
 
 /// One threshold for all folds together; the score is the mean of the folds', so that a large one is not all that counts.

@@ -1,9 +1,9 @@
-//! How good a detector's logits are.
+//! Scores of a detector's logits.
 
 use serde::Serialize;
 use tenax_sim::array::real;
 
-/// Logits and what was so, step by step.
+/// Logits and truth, step by step.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Judged {
     pub logits: Vec<f64>,
@@ -11,7 +11,6 @@ pub struct Judged {
 }
 
 impl Judged {
-    /// Appends another's steps.
     pub fn extend(&mut self, other: &Self) {
         self.logits.extend(&other.logits);
         self.slips.extend(&other.slips);
@@ -22,32 +21,27 @@ impl Judged {
     }
 }
 
-/// What a threshold is chosen for.
+/// The quantity that a threshold maximises.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Aim {
-    /// Fewest wrong steps: missed and false count alike.
+    /// The share of right steps.
     Accuracy,
-    /// The mean of sensitivity and specificity, whatever the share of slip.
+    /// The mean of sensitivity and specificity.
     Balanced,
-    /// The same on pours alone, at no more than [`FALSE_MAX`] of the steps called slip that are none.
     Pours,
 }
 
-/// The part of steps that may be called slip and are none, where the aim is [`Aim::Pours`]: below the paper's 36 in 2800, with
-/// a fifth of it left for sessions that are not those that it was chosen on.
+/// Part of the steps: the paper's 36 in 2800, less a fifth for sessions other than those that a threshold is chosen on.
 pub const FALSE_MAX: f64 = 0.8 * 36.0 / 2_800.0;
 
 /// Counts at a threshold.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Score {
     pub steps: usize,
-    /// Steps that slipped and were not called slip.
     pub missed: usize,
-    /// Steps that did not slip and were called slip.
     #[serde(rename = "false")]
     pub false_alarms: usize,
-    /// Share of right steps.
     pub accuracy: f64,
     /// Mean of sensitivity and specificity. Where there is only one kind of step, the share of right ones.
     pub balanced: f64,

@@ -2,106 +2,77 @@
 
 use tenax_logic::array::FEATURES;
 
-use crate::train::features::{Kind, Sequence};
+use crate::train::features::{Sequence, is_believed_first, kind_of};
 
 /// Rows, one a time step.
 #[derive(Clone, Debug, Default)]
 pub struct Table {
-    /// Features, [`FEATURES`] a row.
     pub features: Vec<f32>,
-    /// 1 where it slipped, else 0.
-    pub labels: Vec<f32>,
-    /// The row at which the sequence of a row begins: nothing may look back beyond it.
-    pub begins: Vec<usize>,
+    pub slips: Vec<bool>,
 }
 
 impl Table {
-    /// All steps of sequences.
     pub fn of<'a>(sequences: impl IntoIterator<Item = &'a Sequence>) -> Self {
         let mut table = Self::default();
         for sequence in sequences {
-            let begin = table.labels.len();
-            for (features, &slip) in sequence.features.iter().zip(&sequence.slips) {
-                table.features.extend(features.iter().map(|&feature| f32::from(feature)));
-                table.labels.push(f32::from(u8::from(slip)));
-                table.begins.push(begin);
-            }
+            table.features.extend(sequence.features.iter().flatten().map(|&feature| f32::from(feature)));
+            table.slips.extend(&sequence.slips);
         }
         table
     }
 
     pub fn len(&self) -> usize {
-        self.labels.len()
+        self.slips.len()
     }
 
     pub fn is_empty(&self) -> bool {
-        self.labels.is_empty()
+        self.slips.is_empty()
     }
 
-    pub fn row(&self, row: usize) -> &[f32] {
-        &self.features[row * FEATURES..][..FEATURES]
+    pub fn rows(&self) -> impl Iterator<Item = &[f32]> {
+        self.features.chunks_exact(FEATURES)
     }
 
-    /// Weights of a row that slips not and of one that does, so that both kinds count alike and the mean is 1.
+    /// Weights of a row without slip and of one with slip: both kinds count alike, and the mean is 1.
     pub fn class_weights(&self) -> [f32; 2] {
-        let all = self.len().max(1) as f32;
-        let slips = self.labels.iter().sum::<f32>();
-        [all / (2.0 * (all - slips).max(1.0)), all / (2.0 * slips.max(1.0))]
-    }
-
-    /// Rows that have `look_back` rows of their own sequence, themselves included.
-    pub fn ready(&self, look_back: usize) -> Vec<usize> {
-        (0..self.len()).filter(|&row| row + 1 >= self.begins[row] + look_back).collect()
+        let slips = self.slips.iter().filter(|&&slips| slips).count();
+        let weight = |count: usize| self.len().max(1) as f32 / (2.0 * count.max(1) as f32);
+        [weight(self.len() - slips), weight(slips)]
     }
 }
 
-/// Brings features to a common scale.
+/// Mean and scale that bring features to a common scale.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Standard {
-    /// Taken off.
     pub mean: Vec<f32>,
-    /// Multiplied with.
     pub scale: Vec<f32>,
 }
 
 impl Standard {
-    /// From the rows to learn from.
-    ///
-    /// `shyness` scales down all features but variances and structure functions, which says before anything is learned that
-    /// those are to be believed first: with few objects, covariances and spectra tell the objects apart rather than their sliding. At 1
-    /// every feature gets a deviation of 1; below, features of one kind share their scale, so that a quiet element is not
-    /// made loud.
+    /// `shyness` scales down all features but variances and structure functions: with few objects, covariances and spectra tell the
+    /// objects apart rather than their sliding. At 1 every feature gets a deviation of 1; below, features of one kind share their scale,
+    /// so that a quiet element is not amplified.
     pub fn of(table: &Table, shyness: f32) -> Self {
         let rows = table.len().max(1) as f64;
         let moment = |feature: usize, about: f64, power: i32| -> f64 {
-            table
-                .features
-                .iter()
-                .skip(feature)
-                .step_by(FEATURES)
-                .map(|&x| (f64::from(x) - about).powi(power))
-                .sum::<f64>()
-                / rows
+            table.rows().map(|row| (f64::from(row[feature]) - about).powi(power)).sum::<f64>() / rows
         };
         let mean: Vec<f64> = (0..FEATURES).map(|feature| moment(feature, 0.0, 1)).collect();
         let deviation: Vec<f64> =
             mean.iter().enumerate().map(|(feature, &mean)| moment(feature, mean, 2).sqrt()).collect();
         let shared = |feature: usize| {
-            let same: Vec<f64> = (0..FEATURES)
-                .filter(|&other| Kind::of(other) == Kind::of(feature))
-                .map(|other| deviation[other])
-                .collect();
+            let same = (0..FEATURES).filter(|&other| kind_of(other) == kind_of(feature));
+            let same: Vec<f64> = same.map(|other| deviation[other]).collect();
             same.iter().sum::<f64>() / same.len().max(1) as f64
         };
-        let scale = (0..FEATURES)
-            .map(|feature| match () {
-                // A feature that hardly ever changes would get a weight that nothing has taught it.
-                () if deviation[feature] < 1.0 => 0.0,
-                () if shyness >= 1.0 => 1.0 / deviation[feature].max(1.0) as f32,
-                () if Kind::of(feature).is_believed_first() => 1.0 / shared(feature).max(1.0) as f32,
-                () => shyness / shared(feature).max(1.0) as f32,
-            })
-            .collect();
+        let scale = |feature: usize| match () {
+            // A feature that hardly ever changes would keep a random weight.
+            () if deviation[feature] < 1.0 => 0.0,
+            () if shyness >= 1.0 => 1.0 / deviation[feature].max(1.0) as f32,
+            () if is_believed_first(feature) => 1.0 / shared(feature).max(1.0) as f32,
+            () => shyness / shared(feature).max(1.0) as f32,
+        };
+        let scale = (0..FEATURES).map(scale).collect();
         Self { mean: mean.into_iter().map(|mean| mean as f32).collect(), scale }
     }
 

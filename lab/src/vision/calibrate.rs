@@ -18,7 +18,7 @@ use crate::equations::Equations;
 
 /// Ridge of the shear's weights, px^2.
 const SHEAR_RIDGE: f64 = 1.0;
-/// How freely each marker's weight may differ from what a plane through all of them says. Both were chosen by leaving out loads,
+/// Freedom of each marker's weight from a plane through all of them. Both were chosen by leaving out loads,
 /// and all loads of a mass: what is learned under light loads then holds under heavy ones.
 const FREE: f64 = 0.1;
 /// Ridge of the normal force's.
@@ -43,7 +43,7 @@ struct Row {
 /// A picture under a known load.
 #[derive(Clone, Debug)]
 pub struct Sample {
-    /// What hangs or stands on the skin, g.
+    /// Load on the skin, g.
     pub mass_g: f64,
     /// Force: x, into the skin, z; N.
     pub force_n: [f64; 3],
@@ -51,7 +51,7 @@ pub struct Sample {
 }
 
 impl Sample {
-    /// How far the markers are spread about their mean move, px rms.
+    /// Spread of the markers about their mean move, px rms.
     pub fn spread_px(&self) -> f64 {
         self.features.normal[0].into()
     }
@@ -63,7 +63,7 @@ impl Sample {
     }
 }
 
-/// How a calibration does on samples.
+/// Errors of a calibration on samples.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Score {
     pub pictures: usize,
@@ -165,8 +165,6 @@ impl Skin {
 }
 
 impl Skin {
-    /// What shear along x, and along y, is in a skin that is alike to the left and to the right: how far the markers move that
-    /// way in the middle, how that changes along the finger, and how they move aside. Weights of the features.
     fn smooth(&self) -> [[OfEach; SMOOTH]; 2] {
         let place = |marker: &Marker| {
             let at = marker.rest.at;
@@ -215,7 +213,6 @@ impl Skin {
     }
 }
 
-/// How much a sample counts.
 fn weight(sample: &Sample) -> f64 {
     1.0 / (0.5 + 0.1 * sample.force_n.iter().map(|force| force * force).sum::<f64>().sqrt())
 }
@@ -230,7 +227,7 @@ fn weighted(samples: &[Sample], axis: usize, by: f64, row: impl Fn(&Sample) -> V
     ridge(&rows, &targets, by)
 }
 
-/// The same, made so much larger that what it tells of the samples is as large as their forces. A regression tells less: the loads are
+/// A ridge regression, scaled so that its estimates of the samples are as large as their forces. A regression tells less: the loads are
 /// known, and what scatters are the moves, since a block is never set down twice alike. Under heavier loads than it has learned
 /// that would be missing.
 fn unshrunk(samples: &[Sample], axis: usize, by: f64, row: impl Fn(&Sample) -> Vec<f64>) -> Vec<f64> {
@@ -256,7 +253,6 @@ fn ridge(rows: &[Vec<f64>], targets: &[f64], ridge: f64) -> Vec<f64> {
     equations.solve()
 }
 
-/// How weights do on samples.
 pub fn score(loads: &Loads, samples: &[Sample]) -> Score {
     let forces: Vec<_> =
         samples.iter().map(|sample| (loads.newtons(&sample.features), sample.force_n)).collect();
@@ -281,23 +277,48 @@ pub fn score(loads: &Loads, samples: &[Sample]) -> Score {
     }
 }
 
-/// A load's mass, truth, sum of the estimates, and pictures.
-type Sum = (f64, [f64; 3], [f64; 3], f64);
+/// A load: truth and the mean estimate over its pictures, N.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Load {
+    pub mass_g: f64,
+    pub x_n: f64,
+    pub normal_n: f64,
+    pub z_n: f64,
+    pub told_x_n: f64,
+    pub told_normal_n: f64,
+    pub told_z_n: f64,
+}
 
-/// Each load's truth and estimate: mean over its pictures, N.
-pub fn table(loads: &Loads, samples: &[Sample]) -> Vec<(f64, [f64; 3], [f64; 3])> {
-    let mut sums: BTreeMap<[i64; 4], Sum> = BTreeMap::new();
-    for sample in samples {
-        let key = [sample.mass_g, sample.force_n[0], sample.force_n[1], sample.force_n[2]];
-        let force = loads.newtons(&sample.features);
-        let entry = sums.entry(key.map(|value| (value * 1e4).round() as i64));
-        let entry = entry.or_insert((sample.mass_g, sample.force_n, [0.0; 3], 0.0));
-        for (sum, value) in entry.2.iter_mut().zip([force.x, force.normal, force.y]) {
-            *sum += f64::from(value);
-        }
-        entry.3 += 1.0;
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    pub markers: usize,
+    pub learned: Score,
+    /// Loads that nothing was learned from.
+    pub tried: Option<Score>,
+    pub loads: Vec<Load>,
+}
+
+/// The places of each load's samples.
+pub fn by_load(samples: &[Sample]) -> Vec<Vec<usize>> {
+    let mut loads: BTreeMap<[i64; 4], Vec<usize>> = BTreeMap::new();
+    for (at, sample) in samples.iter().enumerate() {
+        let [x, y, z] = sample.force_n;
+        let key = [sample.mass_g, x, y, z].map(|value| (value * 1e4).round() as i64);
+        loads.entry(key).or_default().push(at);
     }
-    sums.into_values().map(|(mass, truth, sum, count)| (mass, truth, sum.map(|sum| sum / count))).collect()
+    loads.into_values().collect()
+}
+
+/// Each load's truth and estimate.
+pub fn table(loads: &Loads, samples: &[Sample]) -> Vec<Load> {
+    let load = |own: Vec<usize>| {
+        let told = |axis: usize| {
+            own.iter().map(|&at| samples[at].estimate_n(loads)[axis]).sum::<f64>() / own.len() as f64
+        };
+        let Sample { mass_g, force_n: [x_n, normal_n, z_n], .. } = samples[own[0]];
+        Load { mass_g, x_n, normal_n, z_n, told_x_n: told(0), told_normal_n: told(1), told_z_n: told(2) }
+    };
+    by_load(samples).into_iter().map(load).collect()
 }
 
 /// Samples whose mass is within 2 % of one of `masses_g`, and the others.

@@ -12,17 +12,15 @@ use tenax_vision::quality::LOST_MS;
 
 use super::source::{Pictures, Source};
 
-/// Planes of one picture.
 pub type Planes = Box<[u8; FRAME_BYTES]>;
 
-/// What a drawn camera does wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Fault {
     /// No picture comes.
     Lost,
-    /// Nothing is seen in them.
+    /// Dark pictures.
     Covered,
-    /// The same one comes again and again.
+    /// One picture again and again.
     Frozen,
     /// They come 200 ms after they were taken.
     Late,
@@ -30,19 +28,17 @@ pub enum Fault {
 
 /// When it is wrong, s of the story: an object is held meanwhile, and slides.
 const FAULT_S: std::ops::Range<f64> = 4.0..6.0;
-/// How late a late picture is.
+/// Delay of a late picture, ms.
 const LATE_MS: f64 = 200.0;
 /// Pictures of a drawn scene that are kept at most: 70 MB of them are 10 s.
 const DRAWN_MAX: usize = 1_000;
 /// A covered lens lets this much through.
 const DARK: u8 = 3;
 
-/// What comes next.
 #[derive(Debug)]
 pub enum Next {
     /// A picture, with the instants at which it was taken and came, ms.
     Picture(Planes, u32, u32),
-    /// Nothing has come for too long: the instant.
     Silence(u32),
     End,
 }
@@ -105,7 +101,7 @@ impl Feed {
         Ok(Self { sent, live, clock: None, by_arrival, last_ms: 0.0, waiting: None, silent: false })
     }
 
-    /// What comes next. Fails if a picture could not be read.
+    /// The next picture or silence. Fails if a picture could not be read.
     pub fn take(&mut self) -> Result<Next> {
         self.clock = self.clock.or_else(|| self.live.then(Instant::now));
         let sent = match self.waiting.take() {

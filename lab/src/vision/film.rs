@@ -1,7 +1,6 @@
 //! A video, a folder of pictures or a camera, followed from its first picture to its last.
 
 use std::fs::File;
-use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -15,22 +14,16 @@ use tenax_vision::rectify::Rectifier;
 use tenax_vision::{Camera, Summary};
 
 use super::feed::{Fault, Feed, Next};
-use super::overlay;
 use super::source::Source;
 
-/// What to do with the pictures.
 #[derive(Clone, Debug)]
 pub struct Plan {
     pub source: Source,
     /// Pictures a second, unless the video says it.
     pub rate_hz: Option<f64>,
-    /// Where tables and overlays go.
     pub folder: Option<PathBuf>,
-    /// An overlay of every so many pictures; 0: none.
-    pub overlay_every: usize,
     /// Whether they come as a camera's do and not as fast as they are decoded.
     pub live: bool,
-    /// What is wrong with a drawn camera for two seconds.
     pub fault: Option<Fault>,
     /// Whether a hand holds something, where somebody knows: from then on the object's colours are known.
     pub holds: Option<Arc<AtomicBool>>,
@@ -38,17 +31,14 @@ pub struct Plan {
 
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Report {
-    /// Pictures.
     pub frames: usize,
     /// Pictures a second that one core follows.
     pub fps_per_core: f64,
-    /// Markers of the skin.
     pub markers: usize,
     /// Share of a marker's updates that failed.
     pub failed_share: f64,
     /// The longest way that a known marker went from one picture to the next, px.
     pub longest_jump_px: f64,
-    /// Share of the pictures with an object.
     pub object_share: f64,
     /// Share of the pictures in which it slips.
     pub slip_share: f64,
@@ -56,20 +46,16 @@ pub struct Report {
     pub blind: Blindness,
 }
 
-/// How often a camera was blind, pictures.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct Blindness {
     /// None came for too long: times.
     pub lost: usize,
     /// The picture was too old.
     pub late: usize,
-    /// The same one came again and again.
     pub frozen: usize,
-    /// Nothing is seen in it.
     pub covered: usize,
 }
 
-/// What whoever is told hears.
 #[derive(Debug)]
 pub enum Told<'a> {
     /// A picture, and its age, ms.
@@ -139,9 +125,6 @@ pub fn follow(plan: &Plan, mut feed: Feed, mut told: impl FnMut(Told<'_>) -> Res
         }
         if let Some(tables) = &mut tables {
             tables.write(&camera, &summary)?;
-            if plan.overlay_every > 0 && report.frames.is_multiple_of(plan.overlay_every) {
-                tables.overlay(&overlay::png(&frame, &camera, &summary)?, report.frames)?;
-            }
         }
         let age_ms = now_ms.saturating_sub(taken_ms).try_into().unwrap_or(u16::MAX);
         told(Told::Picture(&camera, &summary, age_ms))?;
@@ -158,75 +141,54 @@ pub fn follow(plan: &Plan, mut feed: Feed, mut told: impl FnMut(Told<'_>) -> Res
 
 /// markers.csv and object.csv.
 struct Tables {
-    folder: PathBuf,
-    markers: BufWriter<File>,
-    object: BufWriter<File>,
+    markers: csv::Writer<File>,
+    object: csv::Writer<File>,
 }
 
 impl Tables {
     fn create(folder: &Path) -> Result<Self> {
-        let create = |name: &str| -> Result<_> {
+        let create = |name: &str, header: &str| -> Result<_> {
             let path = folder.join(name);
-            Ok(BufWriter::new(
-                File::create(&path).with_context(|| format!("cannot write {}", path.display()))?,
-            ))
+            let file = File::create(&path).with_context(|| format!("cannot write {}", path.display()))?;
+            let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(file);
+            writer.write_record(header.split(','))?;
+            Ok(writer)
         };
-        let (mut markers, mut object) = (create("markers.csv")?, create("object.csv")?);
-        writeln!(markers, "frame,marker,x,y,radius,dx,dy,growth,known,failure")?;
-        writeln!(
-            object,
-            "frame,area,x,y,angle_rad,cut,slip_px,moving_px,slips,flow_x,flow_y,shear_x_px,shear_y_px,normal_px,twist_px2,blind"
-        )?;
-        Ok(Self { folder: folder.to_owned(), markers, object })
+        let object = "frame,area,x,y,angle_rad,cut,slip_px,moving_px,slips,flow_x,flow_y,shear_x_px,shear_y_px,normal_px,twist_px2,blind";
+        Ok(Self {
+            markers: create("markers.csv", "frame,marker,x,y,radius,dx,dy,growth,known,failure")?,
+            object: create("object.csv", object)?,
+        })
     }
 
     fn write(&mut self, camera: &Camera, summary: &Summary) -> Result<()> {
+        let &Summary { frame, object, flow, forces, blind, .. } = summary;
         for (number, marker) in camera.markers().into_iter().flat_map(|markers| markers.iter()).enumerate() {
             let (dx, dy) = marker.moved();
-            let failure = marker.found.err().map_or(String::new(), |failure| format!("{failure:?}"));
-            writeln!(
-                self.markers,
-                "{},{number},{:.4},{:.4},{:.4},{dx:.4},{dy:.4},{:.4},{},{failure}",
-                summary.frame,
-                marker.at.x,
-                marker.at.y,
-                marker.rest.radius() + marker.growth,
-                marker.growth,
-                u8::from(marker.known())
-            )?;
+            let (at, radius) = (marker.at, marker.rest.radius() + marker.growth);
+            let failure = marker.found.err().map(|failure| format!("{failure:?}"));
+            let known = u8::from(marker.known());
+            let row = (frame, number, at.x, at.y, radius, dx, dy, marker.growth, known, failure);
+            self.markers.serialize(row)?;
         }
-        write!(self.object, "{}", summary.frame)?;
-        match summary.object {
-            Some(seen) => write!(
-                self.object,
-                ",{:.5},{:.2},{:.2},{:.4},{},{}",
-                seen.area,
-                seen.moments.middle.x,
-                seen.moments.middle.y,
-                seen.angle_rad,
-                u8::from(seen.cut),
-                seen.slip_px
-            )?,
-            None => write!(self.object, ",0,,,,,0")?,
-        }
-        write!(self.object, ",{},{}", camera.object().moving().count(), u8::from(summary.slips()))?;
-        match summary.flow {
-            Some(flow) => write!(self.object, ",{:.3},{:.3}", flow.x, flow.y)?,
-            None => write!(self.object, ",,")?,
-        }
-        match summary.forces {
-            Some(force) => {
-                write!(self.object, ",{:.4},{:.4},{:.4},{:.2}", force.x, force.y, force.normal, force.twist)?;
-            }
-            None => write!(self.object, ",,,,")?,
-        }
-        let blind = summary.blind.map_or(String::new(), |blind| format!("{blind:?}"));
-        writeln!(self.object, ",{blind}")?;
+        self.object.serialize((
+            frame,
+            object.map_or(0.0, |own| own.area),
+            object.map(|own| own.moments.middle.x),
+            object.map(|own| own.moments.middle.y),
+            object.map(|own| own.angle_rad),
+            object.map(|own| u8::from(own.cut)),
+            object.map_or(0, |own| own.slip_px),
+            camera.object().moving().count(),
+            u8::from(summary.slips()),
+            flow.map(|own| own.x),
+            flow.map(|own| own.y),
+            forces.map(|own| own.x),
+            forces.map(|own| own.y),
+            forces.map(|own| own.normal),
+            forces.map(|own| own.twist),
+            blind.map(|own| format!("{own:?}")),
+        ))?;
         Ok(())
-    }
-
-    fn overlay(&self, png: &[u8], frame: usize) -> Result<()> {
-        let path = self.folder.join(format!("overlay_{frame:05}.png"));
-        std::fs::write(&path, png).with_context(|| format!("cannot write {}", path.display()))
     }
 }

@@ -15,22 +15,15 @@ const RATE_HZ: f64 = 30.0;
 /// A marker's place is that of the one that is drawn this near, px.
 const SAME_PX: f64 = 3.0;
 /// Faster than this, px a picture, it slips; slower than a sixth of it, it does not; between is not scored.
-pub const SLIPS_PX: f64 = 0.3;
+const SLIPS_PX: f64 = 0.3;
 /// Pictures after a slip in which what moved is still seen to have moved.
-pub const AFTER: u32 = 8;
+const AFTER: u32 = 8;
 /// Shear below which a force has no direction, px.
 const SHEAR_MIN_PX: f64 = 1.0;
 
-/// What was measured. Null where the scene had no occasion.
-#[derive(Clone, Debug, Default, Serialize)]
-pub struct Report {
-    /// Sessions drawn, from this seed on.
-    pub seed: u64,
-    pub sessions: u64,
-    /// Pictures.
-    pub frames: usize,
-    /// Pictures a second that one core follows, markers and object together.
-    pub fps_per_core: f64,
+/// Shares and errors over pictures. Null where the scene had no occasion.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct Figures {
     /// Share of the drawn markers that were calibrated.
     pub markers_found: Option<f64>,
     /// Share of markers' updates that failed.
@@ -41,150 +34,108 @@ pub struct Report {
     pub force_deg_rms: Option<f64>,
     /// Angle of a held object that is wholly in view, degrees rms.
     pub angle_deg_rms: Option<f64>,
-    /// Share of the pictures with an object partly in view in which that is said.
+    /// Share of the pictures with an object partly in view in which that is reported.
     pub cut_said: Option<f64>,
     /// Share of the pictures with an object held in which it is seen.
     pub object_seen: Option<f64>,
     /// Share of the pictures without an object in which one is seen.
     pub object_false: Option<f64>,
-    /// Slip while held.
-    pub slip: Slip,
-    /// The worst session of each. Null where no session had an occasion.
-    pub worst: Worst,
-    /// Each session by itself, in the order of their seeds.
-    pub by_session: Vec<BySession>,
-}
-
-/// The worst of all sessions, each number by itself.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Worst {
-    /// The least recall of slip.
+    /// Share of the pictures with slip in which it is reported.
     pub recall: Option<f64>,
-    /// The most that was said falsely to slip.
+    /// Share of the pictures without slip in which it is reported, of all and of those with a moving background.
     pub false_rate: Option<f64>,
-    /// The least share of the pictures with an object held in which it is seen.
-    pub seen: Option<f64>,
-}
-
-#[derive(Clone, Copy, Debug, Serialize)]
-pub struct BySession {
-    /// What it was drawn from.
-    pub seed: u64,
-    /// See [`Slip`].
-    pub recall: Option<f64>,
-    /// See [`Slip`].
-    pub false_rate: Option<f64>,
-    /// See [`Report::object_seen`].
-    pub seen: Option<f64>,
-    /// See [`Report::object_false`].
-    pub object_false: Option<f64>,
-    /// See [`Report::angle_deg_rms`].
-    pub angle_deg_rms: Option<f64>,
-}
-
-impl Worst {
-    fn of(sessions: &[BySession]) -> Self {
-        let least = |of: fn(&BySession) -> Option<f64>| sessions.iter().filter_map(of).reduce(f64::min);
-        Self {
-            recall: least(|session| session.recall),
-            false_rate: sessions.iter().filter_map(|session| session.false_rate).reduce(f64::max),
-            seen: least(|session| session.seen),
-        }
-    }
-}
-
-/// How slip was told, by pictures.
-#[derive(Clone, Copy, Debug, Default, Serialize)]
-pub struct Slip {
-    /// Share of the pictures with slip in which it is said.
-    pub recall: Option<f64>,
-    /// Share of the pictures without slip in which it is said.
-    pub false_rate: Option<f64>,
-    /// Share of the latter while the background moves.
     pub false_rate_moving_background: Option<f64>,
 }
 
-#[derive(Clone, Copy, Debug, Default)]
-struct Share {
-    part: u64,
-    all: u64,
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Report {
+    /// The first session's.
+    pub seed: u64,
+    pub frames: usize,
+    /// Pictures a second that one core follows, markers and object together.
+    pub fps_per_core: f64,
+    #[serde(flatten)]
+    pub all: Figures,
+    /// In the order of their seeds.
+    pub by_session: Vec<Figures>,
 }
 
-impl Share {
-    fn add(&mut self, other: Self) {
-        (self.part, self.all) = (self.part + other.part, self.all + other.all);
-    }
-
-    fn count(&mut self, yes: bool) {
-        (self.part, self.all) = (self.part + u64::from(yes), self.all + 1);
-    }
-
-    fn get(self) -> Option<f64> {
-        (self.all > 0).then(|| self.part as f64 / self.all as f64)
-    }
-}
-
+/// A share, or a sum of squares, and its count.
 #[derive(Clone, Copy, Debug, Default)]
-struct Rms {
-    squares: f64,
+struct Sum {
+    sum: f64,
     count: u64,
 }
 
-impl Rms {
-    fn join(&mut self, other: Self) {
-        (self.squares, self.count) = (self.squares + other.squares, self.count + other.count);
+impl Sum {
+    fn count(&mut self, yes: bool) {
+        (self.sum, self.count) = (self.sum + f64::from(u8::from(yes)), self.count + 1);
     }
 
-    fn add(&mut self, off: f64) {
-        (self.squares, self.count) = (self.squares + off * off, self.count + 1);
+    fn square(&mut self, off: f64) {
+        (self.sum, self.count) = (self.sum + off * off, self.count + 1);
     }
 
-    fn get(self) -> Option<f64> {
-        (self.count > 0).then(|| (self.squares / self.count as f64).sqrt())
+    fn share(self) -> Option<f64> {
+        (self.count > 0).then(|| self.sum / self.count as f64)
+    }
+
+    fn rms(self) -> Option<f64> {
+        self.share().map(f64::sqrt)
     }
 }
 
 #[derive(Clone, Copy, Debug, Default)]
 struct Scores {
-    markers_found: Share,
-    failed: Share,
-    marker_px: Rms,
-    force_deg: Rms,
-    angle_deg: Rms,
-    cut_said: Share,
-    seen: Share,
-    unseen: Share,
-    recall: Share,
-    false_rate: Share,
-    false_moving: Share,
+    markers_found: Sum,
+    failed: Sum,
+    marker_px: Sum,
+    force_deg: Sum,
+    angle_deg: Sum,
+    cut_said: Sum,
+    seen: Sum,
+    unseen: Sum,
+    recall: Sum,
+    false_rate: Sum,
+    false_moving: Sum,
 }
 
 impl Scores {
-    fn add(&mut self, other: &Self) {
-        let shares = [
-            (&mut self.markers_found, other.markers_found),
-            (&mut self.failed, other.failed),
-            (&mut self.cut_said, other.cut_said),
-            (&mut self.seen, other.seen),
-            (&mut self.unseen, other.unseen),
-            (&mut self.recall, other.recall),
-            (&mut self.false_rate, other.false_rate),
-            (&mut self.false_moving, other.false_moving),
-        ];
-        shares.into_iter().for_each(|(own, other)| own.add(other));
-        self.marker_px.join(other.marker_px);
-        self.force_deg.join(other.force_deg);
-        self.angle_deg.join(other.angle_deg);
+    fn sums(&mut self) -> [&mut Sum; 11] {
+        [
+            &mut self.markers_found,
+            &mut self.failed,
+            &mut self.marker_px,
+            &mut self.force_deg,
+            &mut self.angle_deg,
+            &mut self.cut_said,
+            &mut self.seen,
+            &mut self.unseen,
+            &mut self.recall,
+            &mut self.false_rate,
+            &mut self.false_moving,
+        ]
     }
 
-    fn by_session(&self, seed: u64) -> BySession {
-        BySession {
-            seed,
-            recall: self.recall.get(),
-            false_rate: self.false_rate.get(),
-            seen: self.seen.get(),
-            object_false: self.unseen.get(),
-            angle_deg_rms: self.angle_deg.get(),
+    fn add(&mut self, mut other: Self) {
+        for (own, other) in self.sums().into_iter().zip(other.sums()) {
+            (own.sum, own.count) = (own.sum + other.sum, own.count + other.count);
+        }
+    }
+
+    fn figures(&self) -> Figures {
+        Figures {
+            markers_found: self.markers_found.share(),
+            failed_share: self.failed.share(),
+            marker_px_rms: self.marker_px.rms(),
+            force_deg_rms: self.force_deg.rms(),
+            angle_deg_rms: self.angle_deg.rms(),
+            cut_said: self.cut_said.share(),
+            object_seen: self.seen.share(),
+            object_false: self.unseen.share(),
+            recall: self.recall.share(),
+            false_rate: self.false_rate.share(),
+            false_rate_moving_background: self.false_moving.share(),
         }
     }
 }
@@ -195,33 +146,13 @@ pub fn score(seed: u64, sessions: u64, stress: Stress) -> Result<Report> {
     let (mut frames, mut worked) = (0, Duration::ZERO);
     let mut by_session = Vec::new();
     for session in 0..sessions {
-        let seed = seed.wrapping_add(session);
         let mut own = Scores::default();
-        follow(seed, stress, &mut own, (&mut frames, &mut worked))?;
-        scores.add(&own);
-        by_session.push(own.by_session(seed));
+        follow(seed.wrapping_add(session), stress, &mut own, (&mut frames, &mut worked))?;
+        scores.add(own);
+        by_session.push(own.figures());
     }
-    Ok(Report {
-        seed,
-        sessions,
-        frames,
-        fps_per_core: frames as f64 / worked.as_secs_f64().max(1e-9),
-        markers_found: scores.markers_found.get(),
-        failed_share: scores.failed.get(),
-        marker_px_rms: scores.marker_px.get(),
-        force_deg_rms: scores.force_deg.get(),
-        angle_deg_rms: scores.angle_deg.get(),
-        cut_said: scores.cut_said.get(),
-        object_seen: scores.seen.get(),
-        object_false: scores.unseen.get(),
-        slip: Slip {
-            recall: scores.recall.get(),
-            false_rate: scores.false_rate.get(),
-            false_rate_moving_background: scores.false_moving.get(),
-        },
-        worst: Worst::of(&by_session),
-        by_session,
-    })
+    let fps_per_core = frames as f64 / worked.as_secs_f64().max(1e-9);
+    Ok(Report { seed, frames, fps_per_core, all: scores.figures(), by_session })
 }
 
 fn follow(
@@ -256,7 +187,7 @@ fn follow(
             for &(own, drawn) in pairs.iter() {
                 scores.failed.count(markers[own].found.is_err());
                 if markers[own].found.is_ok() && markers[own].known() {
-                    scores.marker_px.add(far(markers[own].at, truth.markers[drawn].0));
+                    scores.marker_px.square(far(markers[own].at, truth.markers[drawn].0));
                 }
             }
         }
@@ -277,8 +208,8 @@ fn far(at: tenax_vision::Point, (x, y): (f64, f64)) -> f64 {
     (f64::from(at.x) - x).hypot(f64::from(at.y) - y)
 }
 
-/// How far the object moved against the skin from one picture to the next, px; of a turn, 60 px from the middle.
-pub fn moved(before: &State, now: &State) -> f64 {
+/// Move of the object against the skin from one picture to the next, px; of a turn, 60 px from the middle.
+fn moved(before: &State, now: &State) -> f64 {
     let on_skin = |state: &State| (state.object.0 - state.shear_px.0, state.object.1 - state.shear_px.1);
     let ((ax, ay), (bx, by)) = (on_skin(before), on_skin(now));
     (bx - ax).hypot(by - ay) + 60.0 * (now.angle_rad - before.angle_rad).abs()
@@ -301,7 +232,7 @@ fn judge(
         let (x, y) = truth.state.shear_px;
         if x.hypot(y) >= SHEAR_MIN_PX {
             let off = f64::from(force.y).atan2(force.x.into()) - y.atan2(x);
-            scores.force_deg.add(wrapped(off, std::f64::consts::TAU).to_degrees());
+            scores.force_deg.square(wrapped(off, std::f64::consts::TAU).to_degrees());
         }
     }
     if truth.gripped {
@@ -318,7 +249,7 @@ fn judge(
     if let Some(object) = summary.object {
         if truth.whole && truth.gripped && !object.cut {
             let off = f64::from(object.angle_rad) - truth.state.angle_rad;
-            scores.angle_deg.add(wrapped(off, std::f64::consts::PI).to_degrees());
+            scores.angle_deg.square(wrapped(off, std::f64::consts::PI).to_degrees());
         }
         if truth.in_view && !truth.whole {
             scores.cut_said.count(object.cut);

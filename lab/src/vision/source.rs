@@ -11,15 +11,11 @@ use tenax_vision::frame::{FRAME_BYTES, HEIGHT, WIDTH};
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Source {
     Video(PathBuf),
-    /// A folder of pictures, in the order of their names.
-    Folder(PathBuf),
     /// A camera of Video4Linux, such as /dev/video0.
     Device(PathBuf),
     /// Pictures, one after the other.
     Pictures(Vec<PathBuf>),
-    /// A drawn scene.
     Drawn {
-        /// What draws it.
         seed: u64,
         rate_hz: u32,
     },
@@ -32,7 +28,6 @@ pub enum Pictures {
     Drawn(Box<Session>),
 }
 
-/// What `ffmpeg` decodes.
 #[derive(Debug)]
 pub struct Decoded {
     ffmpeg: Child,
@@ -62,7 +57,6 @@ impl Source {
             &Self::Drawn { seed, rate_hz } => {
                 return Ok(Pictures::Drawn(Box::new(session(seed, rate_hz))));
             }
-            Self::Folder(folder) => return Self::Pictures(pictures_of(folder)?).open(),
             Self::Pictures(paths) => {
                 list = Some(list_of(paths)?);
                 let file = list.as_ref().map(tempfile::NamedTempFile::path);
@@ -95,16 +89,7 @@ impl Source {
             Self::Drawn { rate_hz, .. } => return Some(f64::from(*rate_hz)),
             _ => return None,
         };
-        let probe = [
-            "-v",
-            "error",
-            "-select_streams",
-            "v:0",
-            "-show_entries",
-            "stream=r_frame_rate",
-            "-of",
-            "csv=p=0",
-        ];
+        let probe = "-v error -select_streams v:0 -show_entries stream=r_frame_rate -of csv=p=0".split(' ');
         let told = Command::new("ffprobe").args(probe).arg(path).output().ok()?;
         let told = String::from_utf8(told.stdout).ok()?;
         let (over, under) = told.trim().trim_end_matches(',').split_once('/')?;
@@ -151,22 +136,6 @@ fn there(path: &Path) -> Result<()> {
         bail!("{} is not there", path.display());
     }
     Ok(())
-}
-
-/// The pictures in a folder, by their names.
-fn pictures_of(folder: &Path) -> Result<Vec<PathBuf>> {
-    let entries = std::fs::read_dir(folder).with_context(|| format!("cannot read {}", folder.display()))?;
-    let mut paths = entries.map(|entry| Ok(entry?.path())).collect::<Result<Vec<_>>>()?;
-    let kinds = ["jpg", "jpeg", "png", "bmp", "ppm"];
-    paths.retain(|path| {
-        let kind = path.extension().and_then(|kind| kind.to_str()).map(str::to_lowercase);
-        kind.is_some_and(|kind| kinds.contains(&kind.as_str()))
-    });
-    if paths.is_empty() {
-        bail!("there are no pictures ({}) in {}", kinds.join(", "), folder.display());
-    }
-    paths.sort();
-    Ok(paths)
 }
 
 /// The list of pictures as ffmpeg's concat reads it.

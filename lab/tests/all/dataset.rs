@@ -2,13 +2,13 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use tenax_sim::array::material::{HELD_OUT, SEEN};
-use tenax_sim::labelled::Part;
 use tenax_lab::dataset::session::{Sizes, sessions};
 use tenax_lab::dataset::story::Story;
-use tenax_lab::dataset::{Dataset, Label, Plan, collect};
+use tenax_lab::dataset::{Dataset, Plan, collect};
+use tenax_sim::array::material::{HELD_OUT, SEEN};
+use tenax_sim::labelled::Part;
 
-const SMALL: Plan = Plan { seed: 3, sessions: 1, label: Label::Truth };
+const SMALL: Plan = Plan { seed: 3, sessions: 1 };
 
 fn rows(csv: &[u8]) -> Vec<csv::StringRecord> {
     csv::Reader::from_reader(csv).records().map(|row| row.unwrap()).collect()
@@ -16,7 +16,7 @@ fn rows(csv: &[u8]) -> Vec<csv::StringRecord> {
 
 #[test]
 fn a_small_one_is_what_its_manifest_says() {
-    let dataset = Dataset::make(SMALL, &|_| {}).unwrap();
+    let dataset = Dataset::make(SMALL, None, &|_| {}).unwrap();
     let csv = dataset.csv().unwrap();
     let manifest = dataset.manifest("small.csv", &csv);
     let text = toml::to_string(&manifest).unwrap();
@@ -50,8 +50,6 @@ fn a_small_one_is_what_its_manifest_says() {
     assert!(
         rows.iter().flat_map(|row| row.iter().skip(8)).all(|sample| sample.parse::<u16>().unwrap() <= 16_380)
     );
-    // The marker sees the same slips, through a camera.
-    assert!(manifest.marker_agrees_percent > 90.0, "{} %", manifest.marker_agrees_percent);
 }
 
 #[test]

@@ -4,10 +4,10 @@
 
 use std::path::Path;
 
-use tenax_logic::emg::Emg;
-use tenax_logic::emg::fitted::FITTED;
 use tenax_lab::evaluate::emg;
 use tenax_lab::evaluate::emg::two_channel::Session;
+use tenax_logic::emg::Emg;
+use tenax_logic::emg::fitted::FITTED;
 
 fn sessions() -> Vec<Session> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data");

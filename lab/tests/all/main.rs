@@ -1,17 +1,16 @@
-//! The tests of the studies, one program: `--test all kernels` runs those of a file.
+//! The tests of the studies, one program.
 
 mod dataset;
 mod emg;
 mod evaluate;
-#[cfg(feature = "emulator")]
-mod kernels;
 mod learn;
-#[cfg(feature = "emulator")]
 mod lesson;
 mod photoelastic;
 mod table;
+mod training;
+mod vision;
 
-/// How many heads or sessions a test takes: `TENAX_SEEDS`, which a published figure says with its command, or these.
+/// Heads or sessions of a test: `TENAX_SEEDS`, or these.
 fn seeds(few: u64) -> u64 {
     std::env::var("TENAX_SEEDS").map_or(few, |own| own.parse().expect("TENAX_SEEDS is a number"))
 }

@@ -1,17 +1,18 @@
 //! The photoelastic head on its bench and in a hand. Seeds are those of no calibration.
 
-use tenax_sim::board::Run;
-use tenax_sim::live::Use;
-use tenax_sim::session::{self, Board, Outcome};
+use tenax_frames::quantile::middle;
 use tenax_hal_shim::detector::DetectorId;
 use tenax_hal_shim::wire::Slow;
 use tenax_hal_shim::words::{Cause, GripMode};
-use tenax_scene::SceneFile;
-use tenax_scene::sensor::photoelastic::curve::{Day, Making};
-use tenax_frames::quantile::middle;
+use tenax_lab::photoelastic::bench::mean_head;
 use tenax_lab::photoelastic::force::{self, Score};
 use tenax_lab::photoelastic::rate::{self, Material, Seen};
 use tenax_lab::photoelastic::{balance, region};
+use tenax_scene::SceneFile;
+use tenax_scene::sensor::photoelastic::curve::{Day, Making};
+use tenax_sim::board::Run;
+use tenax_sim::live::Use;
+use tenax_sim::session::{self, Board, Outcome};
 
 const SEEDS: [u64; 3] = [2_001, 2_002, 2_003];
 
@@ -45,11 +46,22 @@ fn a_calibration_from_weights_is_the_heads_within_a_percent() {
         let calibration = balance::weigh(&making, &Day::FIRST, seed.into());
         assert!(calibration.worst_percent() < 1.0, "{seed}: {}", calibration.worst_percent());
     }
-    // Of the mean head it is the default of the settings, within their millivolts and a twentieth of a newton.
-    let mean = balance::weigh(&Making::MEAN, &Day::FIRST, 1.into());
-    for (id, value) in mean.settings() {
-        assert!((value - id.row().default).abs() <= 10, "{}: {value}", id.row().name);
+    // Of the mean head it is the default of the settings, within their millivolts and a hundredth of a newton.
+    let (mean, default) = (balance::weigh(&Making::MEAN, &Day::FIRST, 1.into()).config(), mean_head());
+    let forces = mean.curve.force_mn.into_iter().zip(default.curve.force_mn);
+    assert!(
+        forces.clone().all(|(own, default)| (own - default).abs() <= 10),
+        "{:?}",
+        forces.collect::<Vec<_>>()
+    );
+    for (own, default) in
+        [(mean.curve.dark_q4, default.curve.dark_q4), (mean.curve.bright_q4, default.curve.bright_q4)]
+    {
+        // 10 mV in 1/16 of a sample.
+        assert!((own - default).abs() <= 10 * 16 * 16_380 / 3_300, "{own} {default}");
     }
+    // 10 mV.
+    assert!(mean.slip.abs_diff(default.slip) <= 49, "{} {}", mean.slip, default.slip);
 }
 
 #[test]

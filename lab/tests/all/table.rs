@@ -1,10 +1,10 @@
-//! `tenax chart table`: its keys, its intervals, and detectors whose figures are known before they are heard. Seeds are in the plans.
+//! `tenax chart table`: its keys, its intervals, its costs. Seeds are in the plans.
 
 use serde_json::Value;
 use tenax_lab::chart::table::costs::Costs;
-use tenax_lab::chart::table::heard::{Felt, Judge, Kind, Plan};
-use tenax_lab::chart::table::scored::Scored;
-use tenax_lab::chart::table::{Options, table};
+use tenax_lab::chart::table::heard::Plan;
+use tenax_lab::chart::table::rivals::rows;
+use tenax_lab::chart::table::table;
 
 const fn plan(seed: u64) -> Plan {
     Plan { seed, fingers: 1, pours: 1, picks: 0, minutes: 1 }
@@ -12,24 +12,24 @@ const fn plan(seed: u64) -> Plan {
 
 #[test]
 fn every_row_has_the_keys_and_the_same_slips_and_its_intervals_bracket() {
-    let options = Options { plans: [plan(1), plan(2), plan(3)] };
-    println!("{options:?}");
-    let table = table(&options, &Costs::default(), &|_| {}).unwrap();
-    println!("{table}");
+    let costs = Costs([("s1", 10.0), ("s2", 5.0)].into_iter().collect());
+    let table = table(&[plan(1), plan(2), plan(3)], &costs, &|_| {}).unwrap();
     let chart = table.chart().unwrap();
     assert_eq!(chart.csv.lines().count(), 1 + table.rows.len());
+    assert!(table.slips_1mm > 5, "{}", table.slips_1mm);
     let Value::Array(rows) = serde_json::to_value(&table).unwrap()["rows"].take() else { panic!("no rows") };
-    let keys = "name data instructions_mean instructions_max cycles_mean flash_bytes ram_bytes latency_ms_p50 latency_ms_p95 lead_ms_p50 \
-                recall_1mm recall_1mm_low recall_1mm_high false_per_hour_quiet false_per_hour_disturbed";
-    let slips = rows[0]["slips_1mm"].clone();
-    assert!(slips.as_u64().is_some_and(|slips| slips > 5), "{slips}");
+    let keys = "name recall_1mm recall_1mm_low recall_1mm_high latency_ms_p50 latency_ms_p95 lead_ms_p50 quiet disturbed ns times_s1";
     for row in &rows {
         let has = |key: &&str| row.get(*key).is_some();
         assert!(keys.split_whitespace().all(|key| has(&key)), "{row}");
-        // Nothing was counted, so nothing is told.
-        assert!(
-            row["instructions_mean"].is_null() && row["cycles_mean"].is_null() && row["ram_bytes"].is_null()
-        );
+        // Parts add up; a row without a figure of one part has none.
+        let ns = match row["name"].as_str() {
+            Some("s1") => Some(10.0),
+            Some("s2") => Some(5.0),
+            Some("s1 or s2") => Some(15.0),
+            _ => None,
+        };
+        assert_eq!((row["ns"].as_f64(), row["times_s1"].as_f64()), (ns, ns.map(|ns| ns / 10.0)), "{row}");
         let number = |key: &str| row[key].as_f64().unwrap();
         assert!(
             number("recall_1mm_low") <= number("recall_1mm")
@@ -38,10 +38,9 @@ fn every_row_has_the_keys_and_the_same_slips_and_its_intervals_bracket() {
         );
         assert!(number("recall_1mm_low") < number("recall_1mm_high"), "{row}");
         for kind in ["quiet", "disturbed"] {
-            let [value, low, high] = ["value", "low", "high"].map(|key| row[kind][key].as_f64().unwrap());
+            let [value, low, high] = ["", "_low", "_high"].map(|end| number(&format!("{kind}{end}")));
             assert!(low <= value && value < high, "{row}");
         }
-        assert_eq!(row["slips_1mm"], slips);
         let is_caught = number("recall_1mm") > 0.0;
         assert_eq!(row["latency_ms_p50"].is_number(), is_caught, "{row}");
     }
@@ -54,35 +53,9 @@ fn every_row_has_the_keys_and_the_same_slips_and_its_intervals_bracket() {
     assert!(recall("the hand: any of four") >= recall("s1 or hebbian"));
 }
 
-/// Never says slip, always, or anew in every other frame.
-struct Known(fn(u32) -> bool);
-
-impl Judge for Known {
-    fn hear(&mut self, felt: &Felt<'_>) -> bool {
-        self.0(felt.frame.sequence)
-    }
-}
-
 #[test]
-fn one_that_is_deaf_and_ones_that_never_stop_have_the_figures_that_they_must() {
-    let plan = plan(4);
-    println!("{plan:?}");
-    let rows = || -> Vec<Box<dyn Judge>> {
-        let all: [fn(u32) -> bool; 3] = [|_| false, |_| true, |frame| frame.is_multiple_of(2)];
-        all.map(|known| -> Box<dyn Judge> { Box::new(Known(known)) }).into()
-    };
-    let heard = plan.fingertip(0, false).unwrap().record(&plan, &rows, &mut |_, _| (), &mut || ()).unwrap();
-    let [deaf, stands, shouts] = [0, 1, 2].map(|row| Scored::of(&heard, row..row + 1));
-    assert!(deaf.count(1.0) > 0);
-    let recall = |scored: &Scored| scored.recall(1.0).unwrap().value;
-    assert_eq!([&deaf, &stands, &shouts].map(recall), [0.0, 0.0, 1.0]);
-    assert_eq!(stands.stood_before(1.0), Some(1.0));
-    for kind in [Kind::Quiet, Kind::Disturbed] {
-        let per_hour = |scored: &Scored| scored.false_per_hour(kind).unwrap().value;
-        // What stands has begun before the minute is scored; of what shouts, one in 50 ms is counted.
-        assert_eq!([&deaf, &stands].map(per_hour), [0.0, 0.0]);
-        assert!((per_hour(&shouts) / (20.0 * 3_600.0) - 1.0).abs() < 0.05, "{}", per_hour(&shouts));
-    }
-    assert_eq!((deaf.latency_ms(0.5), deaf.lead_ms()), (None, None));
-    assert!(shouts.lead_ms().is_some());
+fn every_part_of_a_row_has_a_processor_time() {
+    let costs = Costs::measured().unwrap();
+    println!("ns a frame: {:.1?}", costs.0);
+    assert!(rows().iter().all(|row| costs.of(row.parts).is_some_and(|ns| ns > 0.0)));
 }

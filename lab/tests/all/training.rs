@@ -3,14 +3,13 @@
 use std::path::Path;
 
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
-use tenax_sim::labelled::{self, Recording, Step, library};
+use tenax_lab::train::features::{Recipe, Sequence, sequence};
+use tenax_lab::train::fit::{Candidate, FEW_OBJECTS, Trained, fit, judge};
+use tenax_lab::train::quantise::Quantised;
+use tenax_lab::train::score::{Aim, Judged, score};
+use tenax_lab::train::table::Table;
 use tenax_logic::array::{ELEMENTS, Preprocessor, PreprocessorConfig};
-use crate::train::candidates::FEW_OBJECTS;
-use crate::train::features::{Recipe, Sequence, sequence};
-use crate::train::fit::{Candidate, Trained, fit, judge};
-use crate::train::quantise::Quantised;
-use crate::train::score::{Aim, Judged, score};
-use crate::train::table::Table;
+use tenax_sim::labelled::{self, Recording, Step, library};
 
 /// Objects that tremble more while they slip, each with noise of its own.
 fn trembling(seed: u64) -> Vec<Recording> {
@@ -39,13 +38,7 @@ fn sequences(recordings: &[Recording], recipe: &Recipe) -> Vec<Sequence> {
     recordings.iter().map(|recording| sequence(recording, recipe)).collect()
 }
 
-fn quick(look_back: usize) -> Candidate {
-    Candidate { epochs: 3, learning_rate: 2e-3, look_back, ..FEW_OBJECTS[1] }
-}
-
-fn train(sequences: &[Sequence], look_back: usize, seed: u64) -> Trained {
-    fit(sequences, &[quick(look_back)], Aim::Accuracy, seed, &mut |_| {}).unwrap()
-}
+const QUICK: Candidate = Candidate { epochs: 3, learning_rate: 2e-3, ..FEW_OBJECTS[1] };
 
 #[test]
 fn features_are_the_firmwares_bit_for_bit() {
@@ -73,17 +66,16 @@ fn features_are_the_firmwares_bit_for_bit() {
 #[test]
 fn what_can_be_learned_is_learned_and_rounding_costs_little() {
     let sequences = sequences(&trembling(1), &Recipe::FIRMWARE);
-    let trained = train(&sequences, 1, 1);
+    let trained: Trained = fit(&sequences, &[QUICK], Aim::Accuracy, 1, &mut |_| {}).unwrap();
     // A window of ten remembers a slip for a while: half of it, twice in eighty steps, is the best that can be.
     assert!(trained.choice.unseen > 0.85, "{:?}", trained.choice);
     let table = Table::of(&sequences);
     let float = score(&judge(&trained.network, &table), trained.choice.threshold);
-    let quantised = Quantised::of(&trained.network, &table, 8);
+    let quantised = Quantised::of(&trained.network, &table);
     let mut judged = Judged::default();
     for sequence in &sequences {
-        let logits = quantised.logits(sequence).unwrap();
-        judged.slips.extend(&sequence.slips[sequence.slips.len() - logits.len()..]);
-        judged.logits.extend(logits);
+        judged.slips.extend(&sequence.slips);
+        judged.logits.extend(quantised.logits(sequence).unwrap());
     }
     let rounded = score(&judged, trained.choice.threshold);
     assert_eq!(rounded.steps, float.steps);
@@ -94,7 +86,7 @@ fn what_can_be_learned_is_learned_and_rounding_costs_little() {
 fn the_same_seed_gives_the_same_weights_and_another_gives_others() {
     let sequences = sequences(&trembling(1), &Recipe::FIRMWARE);
     let network = |seed| {
-        let cold = Candidate { warm: false, ..quick(1) };
+        let cold = Candidate { warm: false, ..QUICK };
         fit(&sequences, &[cold], Aim::Accuracy, seed, &mut |_| {}).unwrap().network
     };
     assert_eq!(network(3), network(3));
@@ -107,15 +99,14 @@ fn too_little_to_choose_by_is_said() {
     for recording in &mut one {
         recording.session = "cup".into();
     }
-    let said =
-        fit(&sequences(&one, &Recipe::FIRMWARE), &[quick(1)], Aim::Balanced, 1, &mut |_| {}).unwrap_err();
+    let said = fit(&sequences(&one, &Recipe::FIRMWARE), &[QUICK], Aim::Balanced, 1, &mut |_| {}).unwrap_err();
     assert!(said.to_string().contains("at least two are needed"), "{said}");
     let mut quiet = trembling(1);
     for step in quiet.iter_mut().flat_map(|recording| &mut recording.steps) {
         step.slip = false;
     }
     let said =
-        fit(&sequences(&quiet, &Recipe::FIRMWARE), &[quick(1)], Aim::Balanced, 1, &mut |_| {}).unwrap_err();
+        fit(&sequences(&quiet, &Recipe::FIRMWARE), &[QUICK], Aim::Balanced, 1, &mut |_| {}).unwrap_err();
     assert!(said.to_string().contains("both kinds are needed"), "{said}");
 }
 

@@ -1,4 +1,4 @@
-//! What every row of the table hears: the same fingertips, scenes and noise, sample by sample, while nobody's reflex moves the hand.
+//! The input of every row of the table: the same fingertips, scenes and noise, sample by sample, while nobody's reflex moves the hand.
 
 use anyhow::Context;
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
@@ -33,57 +33,43 @@ const LETS_GO_S: f64 = 7.3;
 /// The empty hand's forces are zeroed at this frame.
 const ZEROED_AT: u32 = frames(100);
 
-/// What of the network's learning is changed, for rows that say what it is worth.
-pub const CONTROLS: [Control; 4] =
-    [Control::EqualWeights, Control::ShuffledWeights, Control::ShearAlone, Control::Untaught];
-
-/// What a row judges by, in one frame (0.5 ms).
+/// A row's input in one frame (0.5 ms).
 pub struct Felt<'a> {
-    /// As it was sampled.
     pub frame: &'a Frame,
-    /// As the image conditions it.
     pub sensed: &'a Sensed<'a>,
     /// The detectors of the image that say slip or warn of it, and are believed.
     pub believed: DetectorSet,
-    /// What the network with something of its learning changed says, in the order of [`CONTROLS`].
-    pub controls: [bool; CONTROLS.len()],
+    pub controls: [bool; Control::ALL.len()],
     /// The array's features, in the frames that bring new ones.
     pub features: Option<&'a Features>,
 }
 
-/// Something that says slip, a row of the table. Its state is of one recording.
 pub trait Judge {
     /// Takes a frame: whether it says slip now.
     fn hear(&mut self, felt: &Felt<'_>) -> bool;
 }
 
-/// What a recording is of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// Balls are poured into a box until it slips, again and again; a box is picked up, too loosely as often as not.
     Slips,
     /// A minute of firm holding.
     Quiet,
-    /// The same minute with knocks, swings and runs of the motor.
     Disturbed,
 }
 
-/// What was heard of one recording.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Heard {
-    /// Whose: recordings of one fingertip are not independent of each other.
     pub finger: u64,
     pub kind: Kind,
-    /// What is scored: from when to when, s.
+    /// The scored span, s.
     pub span_s: (f64, f64),
     pub slips: Vec<SlipSpan>,
     pub said: Vec<Vec<Verdict>>,
 }
 
-/// How much is recorded of each fingertip.
 #[derive(Clone, Copy, Debug)]
 pub struct Plan {
-    /// Of everything that is drawn.
     pub seed: u64,
     /// Fingertips with each of four kinds of surface.
     pub fingers: usize,
@@ -98,7 +84,6 @@ pub struct Fingertip {
     number: u64,
     finger: Finger,
     session: Session,
-    /// What was learned, and then each control of it. Empty if nothing was asked of the network.
     taught: Vec<Vec<u8>>,
 }
 
@@ -118,8 +103,8 @@ impl Plan {
         let mut kept = Vec::new();
         if taught {
             kept.push(bench.snapshot()?);
-            for control in CONTROLS {
-                kept.push(bench.controlled(Some(control))?.snapshot()?);
+            for control in Control::ALL {
+                kept.push(bench.controlled(control)?.snapshot()?);
             }
         }
         Ok(Fingertip { number, finger, session, taught: kept })
@@ -129,13 +114,17 @@ impl Plan {
         4 * self.fingers
     }
 
-    /// How long all of it lasts, lessons included, virtual s.
     pub fn recordings(&self) -> u64 {
         self.pours + self.picks + 2 * self.minutes
     }
 }
 
 impl Fingertip {
+    /// The taught network. Fails if it was not taught.
+    pub fn network(&self) -> anyhow::Result<HebbianDetector> {
+        network(self.taught.first().context("nothing was taught")?)
+    }
+
     /// Its recordings, one after the other; `rows` gives fresh judges for each. `steps` hears of each step of the array: its features,
     /// and whether the object slides. Fails if a scene cannot be made.
     pub fn record(
@@ -151,7 +140,7 @@ impl Fingertip {
             let seed = self.number.wrapping_mul(1_000) + 100 * story as u64 + n;
             let session = Session { seed, ..self.session.clone() };
             let mut rng = ChaCha8Rng::seed_from_u64(seed);
-            let scene = story.edited_in(&session, &mut rng, |scene| self.finger.put_on(scene))?;
+            let scene = story.scene_in(&session, &mut rng, |scene| self.finger.put_on(scene))?;
             let mut operator = Operator::new(story, &session, ChaCha8Rng::seed_from_u64(rng.random()));
             let mut drive = |world: &World, slips: bool, _: Vec<Down>| operator.drive(world, slips);
             let end_s = if story == Story::Pick { LETS_GO_S } else { scene.duration_s() };
@@ -231,6 +220,13 @@ impl Fingertip {
     }
 }
 
+/// A network from its snapshot. Fails if that is damaged.
+fn network(snapshot: &[u8]) -> anyhow::Result<HebbianDetector> {
+    let mut network = HebbianDetector::default();
+    network.restore(snapshot).then_some(()).context("a snapshot that is damaged")?;
+    Ok(network)
+}
+
 /// Drives as the scene's commands on the line ask.
 #[derive(Default)]
 struct Line {
@@ -251,7 +247,7 @@ impl Line {
 }
 
 /// The image's senses and detectors, without its reflex: it would change what the others hear.
-struct Ears {
+pub struct Ears {
     config: Config,
     senses: Senses,
     samples: LastSamples,
@@ -263,23 +259,20 @@ struct Ears {
 }
 
 impl Ears {
-    fn new(taught: &[Vec<u8>]) -> anyhow::Result<Self> {
+    pub fn new(taught: &[Vec<u8>]) -> anyhow::Result<Self> {
         let mut detectors = Detectors::default();
-        let damaged = "a snapshot that is damaged";
         let mut controls = Vec::new();
         if let [learned, changed @ ..] = taught {
-            detectors.hebbian.restore(learned).then_some(()).context(damaged)?;
+            detectors.hebbian = network(learned)?;
             for own in changed {
-                let mut network = HebbianDetector::default();
-                network.restore(own).then_some(()).context(damaged)?;
-                controls.push((network, false));
+                controls.push((network(own)?, false));
             }
         }
         let (config, senses, samples, journal, taxels, features) = Default::default();
         Ok(Self { config, senses, samples, detectors, controls, journal, taxels, features })
     }
 
-    fn take(&mut self, frame: &Frame, drive: MotorDrive, hear: &mut dyn FnMut(&Felt<'_>)) {
+    pub fn take(&mut self, frame: &Frame, drive: MotorDrive, hear: &mut dyn FnMut(&Felt<'_>)) {
         let Self { config, senses, samples, detectors, controls, journal, taxels, features } = self;
         if frame.sequence == ZEROED_AT {
             // Refused while something is held, and then it follows by itself.
@@ -317,34 +310,4 @@ impl Ears {
         }
         while journal.next_event().is_some() {}
     }
-}
-
-/// The last so many frames of a pour of the table's kind.
-#[cfg(feature = "emulator")]
-pub fn sampled(count: usize) -> anyhow::Result<Vec<Frame>> {
-    use std::sync::{Arc, Mutex, PoisonError};
-
-    struct Keeps(Arc<Mutex<Vec<Frame>>>);
-    impl Judge for Keeps {
-        fn hear(&mut self, felt: &Felt<'_>) -> bool {
-            self.0.lock().unwrap_or_else(PoisonError::into_inner).push(*felt.frame);
-            false
-        }
-    }
-    let plan = Plan { seed: 25_001, fingers: 1, pours: 1, picks: 0, minutes: 0 };
-    let kept = Arc::new(Mutex::new(Vec::new()));
-    let rows = || -> Vec<Box<dyn Judge>> { vec![Box::new(Keeps(Arc::clone(&kept)))] };
-    plan.fingertip(0, false)?.record(&plan, &rows, &mut |_, _| (), &mut || ())?;
-    let mut kept = std::mem::take(&mut *kept.lock().unwrap_or_else(PoisonError::into_inner));
-    // From the beginning of a cycle on: the image counts frames from 0.
-    let cycle = usize::from(FRAMES_PER_SLOW_FRAME);
-    let from = kept.len().saturating_sub(count) / cycle * cycle;
-    Ok(kept.split_off(from))
-}
-
-/// The array's readings in frames that begin with a cycle.
-#[cfg(feature = "emulator")]
-pub fn readings(frames: &[Frame]) -> Vec<Reading> {
-    let cycles = frames.chunks_exact(usize::from(FRAMES_PER_SLOW_FRAME));
-    cycles.map(|cycle| std::array::from_fn(|n| Some(cycle[n].switch_b))).collect()
 }

@@ -4,21 +4,20 @@
 
 use std::sync::Arc;
 
-use tenax_hal_shim::channel::{FRAME_HZ, SLOW_HZ, frames};
+use tenax_hal_shim::channel::{PVDF_COUNT, frames};
 use tenax_hal_shim::detector::DetectorId;
 use tenax_logic::array::{FEATURES, Features};
 
-use super::heard::{CONTROLS, Felt, Judge};
-use crate::equations::Equations;
+use super::heard::{Felt, Judge};
+use crate::equations;
 use crate::learn::control::Control;
-
-mod plain;
 
 /// Features of the paper (Bamshad 2023): covariances and spectrum.
 pub const OF_PAPER: usize = 76;
-/// A rival's word lasts until its score has been below the threshold for so long, frames.
+/// A rival's report lasts until its score has been below the threshold for so long, frames.
 const HELD: u32 = frames(50);
-/// False alarms an hour that a rival's threshold may have on the fingertips that it is chosen on.
+
+/// False alarms an hour of a rival's threshold on the fingertips that it is chosen on.
 #[derive(Clone, Copy, Debug)]
 pub struct Cap {
     /// In quiet minutes, and in disturbed ones.
@@ -28,7 +27,7 @@ pub struct Cap {
     name: &'static str,
 }
 
-/// The last is about what the network that ships has.
+/// The last is about that of the network that ships.
 pub const CAPS: [Cap; 3] = [
     Cap { held: 10.0, slips: f64::INFINITY, name: "10 false/h" },
     Cap { held: 60.0, slips: f64::INFINITY, name: "60 false/h" },
@@ -40,19 +39,16 @@ const FIXED_PERMILLE: i32 = 300;
 /// A row, before it hears anything.
 pub struct Row {
     pub name: String,
-    /// The kernels that it takes: see [`super::costs`].
-    pub kernels: &'static [&'static str],
+    pub parts: &'static [&'static str],
     /// The threshold that was chosen, on fingertips that are not scored.
     pub threshold: Option<i32>,
-    /// How often it decides.
-    pub per_s: u32,
-    /// Fresh for each recording: whoever of them speaks first.
+    /// Fresh judges for each recording: the first report of any counts.
     pub make: Make,
 }
 
 type Make = Box<dyn Fn() -> Vec<Box<dyn Judge>> + Send + Sync>;
 
-/// What ships says slip, or warns of it, and is believed.
+/// A detector that ships reports slip, or warns of it, and is believed.
 struct Shipped(DetectorId);
 
 impl Judge for Shipped {
@@ -92,23 +88,45 @@ impl<S: Score> Judge for Above<S> {
     }
 }
 
-impl Score for plain::Loudness {
+/// Envelope of the loudest film, without a filter for hum, impacts or a film that is doubted.
+#[derive(Clone, Debug, Default)]
+struct Loudness {
+    /// Slow mean of each film, and the envelope of the rest, Q8 samples.
+    films: [(i32, i32); PVDF_COUNT],
+}
+
+impl Score for Loudness {
+    /// Samples with 4 fraction bits.
     fn of(&mut self, felt: &Felt<'_>) -> Option<i32> {
-        Some(self.step(&felt.frame.pvdf))
+        let mut loudest = 0;
+        for ((mean, envelope), &sample) in self.films.iter_mut().zip(&felt.frame.pvdf) {
+            let sample = i32::from(sample) << 8;
+            // The first sample is where the film rests.
+            if *mean == 0 {
+                *mean = sample;
+            }
+            // Time constants of 16 ms, so from 10 Hz on, and of 8 ms.
+            *mean += (sample - *mean) >> 5;
+            *envelope += ((sample - *mean).abs() - *envelope) >> 4;
+            loudest = loudest.max(*envelope);
+        }
+        Some(loudest >> 4)
     }
 }
 
+/// Shear over normal force, per mille; 0 below a tenth of a newton.
 #[derive(Clone)]
 struct Ratio;
 
 impl Score for Ratio {
     fn of(&mut self, felt: &Felt<'_>) -> Option<i32> {
         let forces = felt.sensed.forces.filter(|_| felt.sensed.forces_are_new)?;
-        Some(plain::ratio_permille(forces.ft_mn, forces.load_mn))
+        let (ft_mn, fn_mn) = (forces.ft_mn, forces.load_mn);
+        Some(if fn_mn < 100 { 0 } else { ft_mn.saturating_mul(1_000) / fn_mn })
     }
 }
 
-/// A logistic regression of the array's features, in the integers that the core would use.
+/// A logistic regression of the array's features in integers: weights have 16 fraction bits, features 9, the logit 8.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Logistic {
     pub weights: Vec<i32>,
@@ -117,46 +135,55 @@ pub struct Logistic {
 
 impl Score for Logistic {
     fn of(&mut self, felt: &Felt<'_>) -> Option<i32> {
-        felt.features.map(|features| plain::logit(&self.weights, self.bias, features))
+        let rows = self.weights.iter().zip(felt.features?);
+        let sum: i64 = rows.map(|(&weight, &feature)| i64::from(weight) * i64::from(feature)).sum();
+        Some((sum >> 17) as i32 + self.bias)
     }
+}
+
+fn above(threshold: i32, score: impl Score + 'static) -> Box<dyn Judge> {
+    Box::new(Above { threshold, score, left: 0 })
+}
+
+pub fn loudness() -> Box<dyn Judge> {
+    above(0, Loudness::default())
+}
+
+pub fn ratio() -> Box<dyn Judge> {
+    above(0, Ratio)
+}
+
+pub fn logistic(own: Logistic) -> Box<dyn Judge> {
+    above(0, own)
 }
 
 /// A rival and the thresholds from which one is chosen.
 pub struct Rival {
-    pub name: &'static str,
-    pub kernels: &'static [&'static str],
+    name: &'static str,
+    parts: &'static [&'static str],
     pub grid: Vec<i32>,
-    per_s: u32,
     make: Arc<dyn Fn(i32) -> Box<dyn Judge> + Send + Sync>,
 }
 
 impl Rival {
     fn new<S: Score + Clone + Send + Sync + 'static>(
         name: &'static str,
-        kernels: &'static [&'static str],
+        parts: &'static [&'static str],
         grid: Vec<i32>,
-        per_s: u32,
         score: S,
     ) -> Self {
-        let make = move |threshold| -> Box<dyn Judge> {
-            Box::new(Above { threshold, score: score.clone(), left: 0 })
-        };
-        Self { name, kernels, grid, per_s, make: Arc::new(make) }
+        Self { name, parts, grid, make: Arc::new(move |threshold| above(threshold, score.clone())) }
     }
 
     pub fn judge(&self, threshold: i32) -> Box<dyn Judge> {
         (self.make)(threshold)
     }
 
-    /// Its row with this threshold, which was chosen within a cap.
     pub fn row(&self, threshold: i32, cap: &Cap) -> Row {
-        let &Self { name, kernels, per_s, .. } = self;
         let make = Arc::clone(&self.make);
-        let name = format!("{name}, {}", cap.name);
         Row {
-            name,
-            kernels,
-            per_s,
+            name: format!("{}, {}", self.name, cap.name),
+            parts: self.parts,
             threshold: Some(threshold),
             make: Box::new(move || vec![make(threshold)]),
         }
@@ -167,96 +194,73 @@ impl Rival {
 pub fn rivals(linear: &Logistic, paper: &Logistic) -> Vec<Rival> {
     let doubling = |n: i32| (16.0 * 2.0_f64.powf(f64::from(n) / 3.0)) as i32;
     let nats = || (-8..=40).map(|n| n * 64).collect();
+    let ratios = (3..=24).map(|n| 50 * n).collect();
     vec![
         Rival::new(
             "vibration threshold",
             &["loudness"],
             (15..43).map(doubling).collect(),
-            FRAME_HZ,
-            plain::Loudness::default(),
+            Loudness::default(),
         ),
-        Rival::new(
-            "Ft/Fn threshold",
-            &["force", "ratio"],
-            (3..=24).map(|n| 50 * n).collect(),
-            SLOW_HZ,
-            Ratio,
-        ),
-        Rival::new("logistic, 112 features", &["features", "logistic_112"], nats(), SLOW_HZ, linear.clone()),
-        Rival::new("logistic, the paper's 76", &["features", "logistic_76"], nats(), SLOW_HZ, paper.clone()),
+        Rival::new("Ft/Fn threshold", &["ratio"], ratios, Ratio),
+        Rival::new("logistic, 112 features", &["features", "logistic_112"], nats(), linear.clone()),
+        Rival::new("logistic, the paper's 76", &["features", "logistic_76"], nats(), paper.clone()),
     ]
 }
 
 /// The rows that need no threshold, in the table's order.
 pub fn rows() -> Vec<Row> {
     use DetectorId::{Hebbian, Mlp, S1, S2};
-    let shipped = |name: &str, kernels, per_s, ids: &'static [DetectorId]| {
-        let make: Make =
-            Box::new(|| ids.iter().map(|&id| -> Box<dyn Judge> { Box::new(Shipped(id)) }).collect());
-        Row { name: name.to_owned(), kernels, threshold: None, per_s, make }
+    let shipped = |name: &str, parts, ids: &'static [DetectorId]| {
+        let judge = |&id| -> Box<dyn Judge> { Box::new(Shipped(id)) };
+        let make: Make = Box::new(move || ids.iter().map(judge).collect());
+        Row { name: name.to_owned(), parts, threshold: None, make }
     };
-    let fixed: Make = Box::new(|| vec![Box::new(Above { threshold: FIXED_PERMILLE, score: Ratio, left: 0 })]);
-    let control = |(n, what): (usize, &Control)| {
+    let fixed: Make = Box::new(|| vec![above(FIXED_PERMILLE, Ratio)]);
+    let control = |(n, what): (usize, Control)| {
         let make: Make = Box::new(move || vec![Box::new(Changed(n))]);
-        let name = format!("hebbian, {}", what.key().replace('_', " "));
-        Row { name, kernels: &["films", "gauges", "hebbian"], threshold: None, per_s: FRAME_HZ, make }
+        let name = format!("hebbian, {}", what.name());
+        Row { name, parts: &["hebbian"], threshold: None, make }
     };
     let mut rows = vec![
-        shipped("s1", &["films", "s1"], FRAME_HZ, &[S1]),
-        shipped("s2", &["force", "s2"], SLOW_HZ, &[S2]),
-        shipped("hebbian", &["films", "gauges", "hebbian"], FRAME_HZ, &[Hebbian]),
-        shipped("mlp", &["slow_frame"], SLOW_HZ, &[Mlp]),
-        shipped("s1 or s2", &["films", "s1", "force", "s2"], FRAME_HZ, &[S1, S2]),
-        shipped("s1 or mlp", &["films", "s1", "slow_frame"], FRAME_HZ, &[S1, Mlp]),
-        shipped("s2 or mlp", &["force", "s2", "slow_frame"], SLOW_HZ, &[S2, Mlp]),
-        shipped("s1 or hebbian", &["films", "s1", "gauges", "hebbian"], FRAME_HZ, &[S1, Hebbian]),
-        shipped("the hand: any of four", &["tick"], FRAME_HZ, &[S1, S2, Hebbian, Mlp]),
+        shipped("s1", &["s1"], &[S1]),
+        shipped("s2", &["s2"], &[S2]),
+        shipped("hebbian", &["hebbian"], &[Hebbian]),
+        shipped("mlp", &["mlp"], &[Mlp]),
+        shipped("s1 or s2", &["s1", "s2"], &[S1, S2]),
+        shipped("s1 or mlp", &["s1", "mlp"], &[S1, Mlp]),
+        shipped("s2 or mlp", &["s2", "mlp"], &[S2, Mlp]),
+        shipped("s1 or hebbian", &["s1", "hebbian"], &[S1, Hebbian]),
+        shipped("the hand: any of four", &["s1", "s2", "hebbian", "mlp"], &[S1, S2, Hebbian, Mlp]),
         Row {
             name: "Ft/Fn above 0.3".to_owned(),
-            kernels: &["force", "ratio"],
+            parts: &["ratio"],
             threshold: Some(FIXED_PERMILLE),
-            per_s: SLOW_HZ,
             make: fixed,
         },
     ];
-    rows.splice(3..3, CONTROLS.iter().enumerate().map(control));
+    rows.splice(3..3, Control::ALL.into_iter().enumerate().map(control));
     rows
 }
 
-/// Learns a logistic regression of the first `count` features by Newton's method, with a little ridge. Labels are slip or not.
+/// Learns a logistic regression of the first `count` features. Labels are slip or not.
 pub fn learn(steps: &[(Features, bool)], count: usize) -> Logistic {
-    let n = count + 1;
     let total = steps.len().max(1) as f64;
     // In doublings (9 fraction bits) about their mean, so that the equations are well conditioned.
     let at = |features: &Features, k: usize| f64::from(features[k]) / 512.0;
     let mean: Vec<f64> =
         (0..count).map(|k| steps.iter().map(|(own, _)| at(own, k)).sum::<f64>() / total).collect();
-    let mut weights = vec![0.0; n];
-    for _ in 0..ROUNDS {
-        let (mut equations, mut row) = (Equations::new(n), vec![0.0; n]);
-        for (features, slips) in steps {
-            for k in 0..count {
-                row[k] = at(features, k) - mean[k];
-            }
-            row[count] = 1.0;
-            let logit: f64 = row.iter().zip(&weights).map(|(x, weight)| x * weight).sum();
-            let p = 1.0 / (1.0 + (-logit).exp());
-            let (miss, weight) = (f64::from(*slips) - p, (p * (1.0 - p)).max(1e-6));
-            equations.add(&row, weight, miss);
-        }
-        (0..count).for_each(|k| equations.add_to(k, RIDGE, -RIDGE * weights[k]));
-        equations.add_to(count, 1e-9, 0.0);
-        for (weight, step) in weights.iter_mut().zip(equations.solve()) {
-            *weight += step;
-        }
-    }
+    let (weights, bias) = equations::logistic(count, steps.len(), RIDGE, |n, row| {
+        let (features, slips) = &steps[n];
+        row.iter_mut().enumerate().for_each(|(k, to)| *to = at(features, k) - mean[k]);
+        (*slips, 1.0)
+    });
     let shift: f64 = mean.iter().zip(&weights).map(|(mean, weight)| mean * weight).sum();
     Logistic {
-        weights: weights[..count].iter().map(|weight| (weight * 65_536.0).round() as i32).collect(),
-        bias: ((weights[count] - shift) * 256.0).round() as i32,
+        weights: weights.iter().map(|weight| (weight * 65_536.0).round() as i32).collect(),
+        bias: ((bias - shift) * 256.0).round() as i32,
     }
 }
 
-const ROUNDS: usize = 8;
 const RIDGE: f64 = 10.0;
 const _: () = assert!(OF_PAPER < FEATURES);

@@ -5,8 +5,8 @@ use std::ops::Range;
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 use serde::Serialize;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
-use tenax_sim::scorer::{CAUGHT_WITHIN_S, Outcome, false_alarms_s, outcome};
 use tenax_frames::quantile::not_exceeded;
+use tenax_sim::scorer::{CAUGHT_WITHIN_S, Outcome, false_alarms_s, outcome};
 
 use super::heard::{Heard, Kind};
 
@@ -14,7 +14,6 @@ use super::heard::{Heard, Kind};
 pub const SLID_MM: [f64; 3] = [0.1, 1.0, 5.0];
 /// Times that fingertips are drawn anew for an interval.
 const DRAWS: usize = 1_000;
-/// What of the draws lies below an interval, and above it.
 const TAIL: f64 = 0.025;
 
 /// A part or a rate and where it lies with 95 %.
@@ -33,7 +32,6 @@ struct Slip {
     outcome: Outcome,
 }
 
-/// What a row did.
 #[derive(Clone, Debug, Default)]
 pub struct Scored {
     slips: Vec<Slip>,
@@ -75,7 +73,6 @@ impl Scored {
         self.slips.iter().filter(move |slip| slip.mm >= mm)
     }
 
-    /// How many slips slide so far.
     pub fn count(&self, mm: f64) -> usize {
         self.at_least(mm).count()
     }

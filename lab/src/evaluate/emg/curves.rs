@@ -1,12 +1,9 @@
-//! Speed and accuracy for the wearer: windows right, and how late, at each rate of false motions, of the hand and of the plain control that
-//! `baseline.py` of the data set is: a threshold on the site, the side by the ratio of both electrodes.
-//!
-//! Both are swept by how much of the calibrated contraction they ask for, and counted alike, over all people and sessions.
+//! Speed and accuracy for the wearer at each rate of false motions: the hand, and plain control as in `baseline.py` of the data set, a
+//! threshold on the site, the side by the ratio of both electrodes. Both ask for more or less of the calibrated contraction.
 
 use std::path::Path;
 
 use rayon::prelude::*;
-use serde::Serialize;
 use tenax_logic::emg::constants::Fitted;
 use tenax_logic::emg::decide::Wish;
 use tenax_logic::emg::fitted::FITTED;
@@ -24,18 +21,17 @@ const HAND: [f64; 9] = [0.5, 0.65, 0.8, 0.9, 1.0, 1.1, 1.25, 1.4, 1.6];
 /// Rows for which plain control waits.
 const PLAIN_DWELL: usize = 3;
 
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug)]
 pub struct Point {
-    /// Who decides.
+    /// `hand` or `plain`.
     pub control: &'static str,
-    /// On which calibration.
     pub calibration: &'static str,
-    /// What is asked for: a part of the calibrated rise, or times what ships.
+    /// Demand: a part of the calibrated rise, or times the shipped one.
     pub asks: f64,
     pub score: Score,
 }
 
-/// What plain control knows of a wearer: levels of both sites, Q10 octaves.
+/// Plain control's calibration: levels of both sites, Q10 octaves.
 struct Plain {
     begins: [f64; 2],
     /// The ratio between closing and opening.
@@ -95,12 +91,9 @@ fn asking(times: f64) -> &'static Fitted {
     Box::leak(Box::new(fitted))
 }
 
-/// Both curves of everybody in a folder.
-///
-/// # Errors
-/// If there is nobody, or a recording cannot be read.
+/// Both curves of everybody in a folder. Fails if there is nobody, or a recording cannot be read.
 pub fn curves(folder: &Path) -> anyhow::Result<Vec<Point>> {
-    let Recordings { people, .. } = Recordings::read(folder, None)?;
+    let Recordings { people, .. } = Recordings::read(folder)?;
     let trials: Vec<Trial> = people.values().flat_map(|days| Trials::of(days).all).collect();
     let heard: Vec<_> = trials.par_iter().map(Trial::hear).collect();
     let kinds = [(Kind::SameSession, "same session"), (Kind::OtherPosture, "other posture")];

@@ -26,7 +26,7 @@ use tenax_logic::gate::Gate;
 use super::recordings::{HZ, PAIRS_HZ};
 use super::trial::{Kind, Trial};
 
-/// What a fault may open while something is held, mm of the scenes' hand, 120 mm/s at full duty (docs/emg.md).
+/// Safe opening by a fault while something is held, mm of the scenes' hand, 120 mm/s at full duty (docs/emg.md).
 const SAFE_MM: f64 = 0.75;
 /// Before the fault, s; how long a fault lasts; and what follows.
 const BEFORE_S: f64 = 8.0;
@@ -39,15 +39,15 @@ const FRONT_END_S: f64 = 0.027;
 /// Pins that give a number, mV above the live zero.
 const RANGE_MV: [f64; 2] = [-200.0, 2_950.0];
 
-/// What an electrode gives instead of its muscle.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+/// Signal of an electrode instead of its muscle's.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Fault {
     /// Off the skin: mains, rectified and smoothed.
     Lifted,
     /// A bad contact: another level every now and then.
     Loose,
-    /// It climbs.
+    /// A rising level.
     Creeping,
     /// Hum beside the muscle.
     Humming,
@@ -59,36 +59,21 @@ pub enum Fault {
     Broken,
 }
 
-impl Fault {
-    pub const ALL: [Self; 7] = [
-        Self::Lifted,
-        Self::Loose,
-        Self::Creeping,
-        Self::Humming,
-        Self::Swinging,
-        Self::Saturated,
-        Self::Broken,
-    ];
-
-    const fn name(self) -> &'static str {
-        match self {
-            Self::Lifted => "lifted",
-            Self::Loose => "loose",
-            Self::Creeping => "creeping",
-            Self::Humming => "humming",
-            Self::Swinging => "swinging hum",
-            Self::Saturated => "saturated",
-            Self::Broken => "broken",
-        }
-    }
-}
+const FAULTS: [Fault; 7] = [
+    Fault::Lifted,
+    Fault::Loose,
+    Fault::Creeping,
+    Fault::Humming,
+    Fault::Swinging,
+    Fault::Saturated,
+    Fault::Broken,
+];
 
 /// Which electrodes it has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Where {
     Closing,
     Opening,
-    /// Both, in proportion.
     Both,
 }
 
@@ -108,7 +93,7 @@ struct Drawn {
 
 impl Drawn {
     fn of(rng: &mut ChaCha8Rng) -> Self {
-        let fault = Fault::ALL[rng.random_range(0..Fault::ALL.len())];
+        let fault = FAULTS[rng.random_range(0..FAULTS.len())];
         let place = [Where::Closing, Where::Opening, Where::Opening, Where::Both][rng.random_range(0..4)];
         let level =
             |rng: &mut ChaCha8Rng, low: f64, high: f64| low * (high / low).powf(rng.random_range(0.0..1.0));
@@ -143,7 +128,7 @@ impl Drawn {
         }
     }
 
-    /// What a site's electrode gives `t_s` after it began, mV.
+    /// Signal of a site's electrode `t_s` after the fault began, mV.
     fn read(&mut self, site: usize, muscle_mv: f64, t_s: f64, rng: &mut ChaCha8Rng) -> f64 {
         if !self.has(site) {
             return muscle_mv;
@@ -174,7 +159,6 @@ impl Drawn {
     }
 }
 
-/// What came of a case.
 #[derive(Clone, Copy, Debug)]
 struct Outcome {
     fault: Fault,
@@ -275,7 +259,6 @@ pub struct Row {
     /// Those that opened by more than is safe, and the most that one did, mm.
     pub dropped: usize,
     pub most_mm: f64,
-    /// Those that were activity for so long that they have to be reported, and those that were.
     pub lasting: usize,
     pub reported: usize,
 }
@@ -296,18 +279,15 @@ impl Row {
 
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
-    /// Of what they were drawn.
     pub seed: u64,
-    /// All, those of one electrode, and those of both.
     pub all: Row,
+    /// Faults of one electrode, of both, and of one by kind.
     pub one: Row,
     pub both: Row,
-    /// By kind of fault, of one electrode; and by kind of wearer.
-    pub faults: BTreeMap<&'static str, Row>,
+    pub faults: BTreeMap<Fault, Row>,
     pub wearers: BTreeMap<&'static str, Row>,
 }
 
-/// Draws so many, on the trials of everybody.
 pub(in crate::evaluate) fn draw(fitted: &'static Fitted, trials: &[&Trial], cases: u32, seed: u64) -> Report {
     let of_kind = |wearer: usize| -> Vec<&&Trial> {
         let kinds = [Kind::SameSession, Kind::OtherPosture, Kind::FirstDayKept];
@@ -328,19 +308,14 @@ pub(in crate::evaluate) fn draw(fitted: &'static Fitted, trials: &[&Trial], case
         })
         .collect();
     let one = || outcomes.iter().filter(|own| !own.both);
+    let of_wearer = |wearer| Row::of(outcomes.iter().filter(|own| own.wearer == wearer));
+    let of_fault = |fault| Row::of(one().filter(|own| own.fault == fault));
     Report {
         seed,
         all: Row::of(outcomes.iter()),
         one: Row::of(one()),
         both: Row::of(outcomes.iter().filter(|own| own.both)),
-        faults: Fault::ALL
-            .into_iter()
-            .map(|fault| (fault.name(), Row::of(one().filter(|own| own.fault == fault))))
-            .collect(),
-        wearers: WEARERS
-            .into_iter()
-            .enumerate()
-            .map(|(wearer, name)| (name, Row::of(outcomes.iter().filter(|own| own.wearer == wearer))))
-            .collect(),
+        faults: FAULTS.into_iter().map(|fault| (fault, of_fault(fault))).collect(),
+        wearers: WEARERS.into_iter().enumerate().map(|(n, name)| (name, of_wearer(n))).collect(),
     }
 }

@@ -1,4 +1,4 @@
-//! How sure a median over a few people is: people are drawn again, and of each as many sessions, 1,000 times.
+//! Bootstrap intervals of a median over a few people: people are drawn again, and of each as many sessions, 1,000 times.
 
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
@@ -7,12 +7,10 @@ use serde::Serialize;
 use super::score::{Count, Score};
 use super::trial::Kind;
 
-/// How often all is drawn.
 const DRAWS: usize = 1_000;
 /// Between which parts of the draws an interval lies.
 const PARTS: [f64; 2] = [0.025, 0.975];
 
-/// What was counted of a person, session by session.
 #[derive(Clone, Debug)]
 pub(in crate::evaluate) struct Sessions(pub Vec<(Kind, Count)>);
 
@@ -21,7 +19,6 @@ impl Sessions {
         self.0.iter().filter(|own| own.0 == kind).map(|own| &own.1).collect()
     }
 
-    /// All of a kind together.
     pub fn score(&self, kind: Kind) -> Option<Score> {
         Count::sum(self.of(kind)).score()
     }
@@ -35,7 +32,7 @@ pub struct Interval {
 }
 
 impl Interval {
-    /// Of the median over these people; none of nobody.
+    /// The interval of the median over these people; None without people.
     pub(in crate::evaluate) fn of(people: &[Sessions], kind: Kind) -> Option<Self> {
         let people: Vec<Vec<&Count>> =
             people.iter().map(|own| own.of(kind)).filter(|own| !own.is_empty()).collect();

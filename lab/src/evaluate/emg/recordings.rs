@@ -111,7 +111,7 @@ impl Recording {
         self.repetitions(label).into_iter().filter(|rows| rows.len() > 100).collect()
     }
 
-    /// Where the wearer surely rests: from 1 s after the label's start to 0.3 s before its end.
+    /// Rows of certain rest: from 1 s after the label's start to 0.3 s before its end.
     pub(super) fn rests(&self) -> Vec<Range<usize>> {
         let inner = |rows: Range<usize>| rows.start + 100..rows.end.saturating_sub(30);
         self.repetitions(REST).into_iter().map(inner).filter(|rows| !rows.is_empty()).collect()
@@ -139,7 +139,6 @@ impl Recording {
         all
     }
 
-    /// What was said of each pair of the whole recording, in each row.
     pub(super) fn by_row<S: Copy + Default>(&self, mut said: impl Iterator<Item = S>) -> Vec<S> {
         let mut rows = Vec::with_capacity(self.uv.len());
         let mut last = S::default();
@@ -253,7 +252,6 @@ pub(super) mod tests {
         Recording { uv, labels }
     }
 
-    /// The same with closing called opening and the other way round.
     pub fn swapped(mut recording: Recording) -> Recording {
         for label in &mut recording.labels {
             *label = match *label {

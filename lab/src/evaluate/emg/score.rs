@@ -1,12 +1,11 @@
-//! What a hand said of a recording, counted as `baseline.py` of that data set counts, so that figures compare.
+//! Scores of a recording, counted as in `baseline.py` of that data set, so that figures compare.
 
 use serde::Serialize;
-use tenax_logic::emg::decide::Wish;
 use tenax_frames::quantile::between_ranks;
+use tenax_logic::emg::decide::Wish;
 
 use super::recordings::{CLOSE, HZ, OPEN, Recording};
 
-/// What the hand says in a row.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::evaluate) struct Said {
     pub wish: Wish,
@@ -20,12 +19,10 @@ pub(in crate::evaluate) struct Said {
 pub(in crate::evaluate) struct Count {
     rest_h: f64,
     false_motions: u32,
-    /// Of closing and of opening: windows, those right, those the wrong way.
     windows: [[u32; 3]; 2],
     repetitions: u32,
     missed: u32,
     latencies_s: Vec<f64>,
-    /// The same to the wish that is proven.
     full_s: Vec<f64>,
     rows: usize,
     doubted: usize,
@@ -109,16 +106,14 @@ impl Count {
     }
 }
 
-/// How well the wearer's wish was understood.
+/// Rates and latencies of intent recognition.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct Score {
     /// Windows of 0.25 s of held closing that close.
     pub close_right: f64,
-    /// And that open.
     pub close_wrong_way: f64,
     /// Windows of held opening that open.
     pub open_right: f64,
-    /// And that close.
     pub open_wrong_way: f64,
     /// Repetitions that were never answered.
     pub missed: f64,
@@ -126,11 +121,9 @@ pub struct Score {
     pub false_per_hour: f64,
     /// From the label's start to the wish, s: negative where the wearer was earlier.
     pub latency_s_p50: f64,
-    /// The same of the slowest 5 %.
     pub latency_s_p95: f64,
     /// From the label's start until the wish moves the hand at its speed, s: until then it moves gently and by little.
     pub full_s_p50: f64,
-    /// The same of the slowest 5 %.
     pub full_s_p95: f64,
     /// Part of the time in which a sensor was doubted.
     pub doubted_part: f64,
@@ -139,24 +132,26 @@ pub struct Score {
 impl Score {
     /// The quantile of each number by itself.
     pub(super) fn quantile(scores: &[Self], part: f64) -> Option<Self> {
-        let of = |value: fn(&Self) -> f64| between_ranks(scores.iter().map(value), part);
+        if scores.is_empty() {
+            return None;
+        }
+        let of = |value: fn(&Self) -> f64| quantile(&scores.iter().map(value).collect::<Vec<_>>(), part);
         Some(Self {
-            close_right: of(|score| score.close_right)?,
-            close_wrong_way: of(|score| score.close_wrong_way)?,
-            open_right: of(|score| score.open_right)?,
-            open_wrong_way: of(|score| score.open_wrong_way)?,
-            missed: of(|score| score.missed)?,
-            false_per_hour: of(|score| score.false_per_hour)?,
-            latency_s_p50: of(|score| score.latency_s_p50)?,
-            latency_s_p95: of(|score| score.latency_s_p95)?,
-            full_s_p50: of(|score| score.full_s_p50)?,
-            full_s_p95: of(|score| score.full_s_p95)?,
-            doubted_part: of(|score| score.doubted_part)?,
+            close_right: of(|score| score.close_right),
+            close_wrong_way: of(|score| score.close_wrong_way),
+            open_right: of(|score| score.open_right),
+            open_wrong_way: of(|score| score.open_wrong_way),
+            missed: of(|score| score.missed),
+            false_per_hour: of(|score| score.false_per_hour),
+            latency_s_p50: of(|score| score.latency_s_p50),
+            latency_s_p95: of(|score| score.latency_s_p95),
+            full_s_p50: of(|score| score.full_s_p50),
+            full_s_p95: of(|score| score.full_s_p95),
+            doubted_part: of(|score| score.doubted_part),
         })
     }
 }
 
-/// 0 of nothing.
 pub(super) fn quantile(values: &[f64], part: f64) -> f64 {
     between_ranks(values.iter().copied(), part).unwrap_or_default()
 }

@@ -29,7 +29,6 @@ pub(in crate::evaluate) struct Trial<'a> {
 }
 
 impl Trial<'_> {
-    /// What the hand says in each row.
     pub fn play(&self, fitted: &'static Fitted) -> Vec<Said> {
         let mut emg = Emg::of(Decide::with(fitted, Some(&self.model)));
         let said = self.pairs().map(|uv| {
@@ -55,7 +54,6 @@ impl Trial<'_> {
         self.pairs().filter_map(hear).collect()
     }
 
-    /// As [`play`](Self::play), of what was [heard](Self::hear), and without proofs and doubts: to fit.
     pub fn decide(&self, fitted: &'static Fitted, heard: &[[Electrode; 2]]) -> Vec<Said> {
         let mut decide = Decide::with(fitted, Some(&self.model));
         let mut wish = Wish::Rest;
@@ -67,7 +65,6 @@ impl Trial<'_> {
         self.recording.by_row(said.map(|wish| Said { wish, ..Said::default() }))
     }
 
-    /// What was said, counted less the repetitions that were calibrated from.
     pub fn counted(&self, said: &[Said]) -> Count {
         let mut count = Count::default();
         count.add(self.recording, said, if self.kind == Kind::SameSession { 2 } else { 0 });
@@ -75,7 +72,6 @@ impl Trial<'_> {
     }
 }
 
-/// All of a person.
 #[derive(Debug)]
 pub(in crate::evaluate) struct Trials<'a> {
     pub all: Vec<Trial<'a>>,

@@ -7,10 +7,6 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use serde::Serialize;
-use tenax_sim::recipe::Kind;
-use tenax_sim::replay::Recipe;
-use tenax_sim::replay::meaning::Motion;
-use tenax_sim::replay::muscles::{Muscles, calibrate};
 use tenax_logic::emg::constants::Fitted;
 use tenax_logic::emg::decide::{Decide, Wish};
 use tenax_logic::emg::level::level_of;
@@ -18,8 +14,11 @@ use tenax_logic::emg::mains::mains_of;
 use tenax_logic::emg::model::{EmgModel, Refusal};
 use tenax_logic::emg::trust::Quality;
 use tenax_logic::emg::{Emg, Verdict};
+use tenax_sim::recipe::Kind;
+use tenax_sim::replay::Recipe;
+use tenax_sim::replay::meaning::Motion;
+use tenax_sim::replay::muscles::{Muscles, calibrate};
 
-/// How their names begin.
 pub(super) const PREFIX: &str = "emg_two_channel_";
 /// The window in which a decision is scored, s.
 const WINDOW_S: f64 = 0.25;
@@ -31,9 +30,7 @@ const FRONT_END_S: f64 = 0.056;
 pub struct Movement {
     /// Its name without the session's.
     pub name: String,
-    /// What the wearer wants by it.
     wants: Wish,
-    /// What the hand must not do meanwhile.
     never: Vec<Wish>,
     muscles: Muscles,
 }
@@ -50,7 +47,6 @@ pub struct Session {
 #[derive(Clone, Debug)]
 pub struct Calibrated {
     choice: [usize; 3],
-    /// What came of it.
     pub model: Result<EmgModel, Refusal>,
     /// Windows of other held movements that are nearest to the middle of what they mean.
     nearest: u32,
@@ -91,7 +87,6 @@ impl Movement {
         self.wants == Wish::Rest && self.never.len() == 2
     }
 
-    /// As electrodes would hear it that hear so much more or less, flexor first.
     pub fn heard_with(&self, gains: [f64; 2]) -> Self {
         let mut heard = self.clone();
         for (_, pair) in &mut heard.muscles.pairs {
@@ -102,7 +97,6 @@ impl Movement {
         heard
     }
 
-    /// What a hand says of it.
     pub fn play(&self, mut emg: Emg) -> Played<'_> {
         let mut doubts = Vec::new();
         let mut was = [Quality::Good; 2];
@@ -141,14 +135,13 @@ impl Movement {
         self.windows().filter(is_right).count() as u32
     }
 
-    /// Where its windows begin, s.
+    /// Begins of its windows, s.
     fn windows(&self) -> impl Iterator<Item = f64> + Clone {
         let count = (self.muscles.duration_s / WINDOW_S + 0.01) as u32;
         (0..count).map(|n| FRONT_END_S + f64::from(n) * WINDOW_S)
     }
 }
 
-/// What a recording made the hand say.
 #[derive(Clone, Debug)]
 pub struct Played<'a> {
     movement: &'a Movement,
@@ -177,7 +170,6 @@ impl Played<'_> {
         (longest_s * 1e3).round() as u32
     }
 
-    /// Of a held movement that moves the hand: windows in most of which the hand does, and windows in all.
     pub fn windows(&self) -> Option<[u32; 2]> {
         let wants = self.movement.wants;
         let is_right = |from_s: &f64| {
@@ -196,7 +188,6 @@ impl Played<'_> {
     }
 }
 
-/// Every session among these files.
 pub(super) fn sessions(files: &[PathBuf]) -> anyhow::Result<Vec<Session>> {
     let mut sessions: BTreeMap<String, Vec<Movement>> = BTreeMap::new();
     for path in files {
@@ -222,9 +213,7 @@ pub struct Report {
     pub refused: usize,
     /// Windows of 0.25 s of held movements, not calibrated from, that move the hand the right way, over all calibrations.
     pub right: f64,
-    /// The same with the worst of them.
     pub worst_right: f64,
-    /// The same of the nearest of the three middles of each calibration, over all of them: the peer.
     pub nearest_right: f64,
     /// The longest motion that must not be, ms, over all calibrations, by movement.
     pub wrong_ms: BTreeMap<String, u32>,
@@ -261,7 +250,6 @@ impl Session {
         Calibrated { choice, model, nearest }
     }
 
-    /// Every calibration that there can be.
     pub fn calibrations(&self) -> &[Calibrated] {
         &self.calibrations
     }

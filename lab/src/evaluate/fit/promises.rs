@@ -1,4 +1,4 @@
-//! What the hand has promised its wearer, as a cost: none of it may be paid for with better figures on people.
+//! The promises to the wearer, as a cost: none may be paid for with better figures on people.
 //!
 //! Short recordings of other people ([`two_channel`](super::super::emg::two_channel)); made-up muscles that contract both, open, and hold tone; and faults
 //! of one electrode, with what the hand then opens. The tests of `host-tests` hold the whole of it.
@@ -11,7 +11,6 @@ use tenax_logic::emg::{Emg, Verdict};
 
 use crate::evaluate::emg::two_channel::Session;
 
-/// What a promise costs that is broken outright.
 const BROKEN: f64 = 20.0;
 /// Pairs a second.
 const HZ: f64 = 240.0;
@@ -45,7 +44,6 @@ impl<'a> Promises<'a> {
         Self { sessions, wearers: wearers.collect() }
     }
 
-    /// What is broken.
     pub fn cost(&self, fitted: &'static Fitted) -> f64 {
         let muscles: f64 =
             self.wearers.iter().zip(WEARERS_MV).map(|(model, mv)| of_muscles(fitted, model, mv)).sum();
