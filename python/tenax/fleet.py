@@ -26,8 +26,7 @@ HOLDS_N = 0.5
 READING_S = 1 / 80
 # A ratio that has stood for so many readings is carried by friction, 50 ms.
 SHOWN_FOR = 4
-# S1 in mV: its default, which noise can raise and never lower, the most that a worn hand takes, and how far above quiet it stands
-# (as `tenax config suggest` has it).
+# S1 in mV: its default, which noise can raise and never lower, the most that a worn hand takes, and how far above quiet it stands.
 S1_MV, S1_MOST_MV, ABOVE_QUIET = 100, 150, 2.5
 
 # Steps of a histogram, N and mV: quantiles are known to half of one.

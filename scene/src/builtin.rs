@@ -1,4 +1,4 @@
-//! The scenes of `scenes/`, carried inside the program, so that `tenax scenes` lists them anywhere.
+//! The scenes of `scenes/`, carried inside the program, so that `tenax run --list` lists them anywhere.
 
 use std::borrow::Cow;
 

@@ -2,7 +2,7 @@
 //! its DMA, the bridge's timer, the flash array and the chip's memories.
 //!
 //! `rigless` does not draw it (words of the flash, a timer's trigger of the converter), or stops the core for what nobody sees
-//! (`docs/tools.md`). [`Models::Rigless`] runs without the stand-ins.
+//! (`docs/bring-up.md`). [`Models::Rigless`] runs without the stand-ins.
 
 mod bridge_timer;
 pub mod flash;

@@ -25,14 +25,13 @@ use crate::train::table::Table;
 const EXAMPLES: &str = "\
 Examples:
   tenax train                                     from the data set of `tenax dataset`, which is made if it is not there
-  tenax train --dataset mine.csv --recipe r.toml  from recordings of your own; docs/training.md says how to write a recipe
+  tenax train --dataset mine.csv --recipe r.toml  from recordings of your own; docs/array.md says how to write a recipe
   tenax train emg --recordings FOLDER             the constants of intent recognition, leaving out each person once";
 
 /// The default file of `tenax dataset`.
 const DATASET: &str = "out/array_dataset.csv";
 /// Files of `--out` that `--ship` copies, and their places.
-const SHIPPED_TO: [(&str, &str); 2] =
-    [("network.rs", "logic/src/array/shipped.rs"), ("model-card.md", "docs/model-card.md")];
+const SHIPPED_TO: [(&str, &str); 1] = [("network.rs", "logic/src/array/shipped.rs")];
 
 /// Train the force array's slip detector from labelled recordings
 #[derive(Debug, clap::Args)]
@@ -179,7 +178,7 @@ fn train(path: &Path, args: &Args) -> anyhow::Result<[(&'static str, Vec<u8>); 4
     };
     out::unless_closed(args.report.show(&report))?;
     let about = format!(
-        "Learned from `{}` (SHA-256 {}), seed {}; docs/model-card.md has its scores.",
+        "Learned from `{}` (SHA-256 {}), seed {}; docs/array.md says how it is judged.",
         report.data.file, report.data.sha256, report.seed
     );
     Ok([

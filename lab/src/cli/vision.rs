@@ -71,7 +71,7 @@ pub struct Args {
     /// one program can send on a line
     #[arg(long, value_name = "WHAT", requires = "port", value_parser = behaviour)]
     begin: Option<Behaviour>,
-    /// Also send the teacher's codes; without --port only print them, one line a picture, for `tenax monitor --teach`
+    /// Also send the teacher's codes; without --port only print them, one line a picture
     #[arg(long, requires = "source")]
     teach: bool,
     /// Seed of the drawn scenes
@@ -149,7 +149,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
                         board.line.send(&command).context("cannot write to the line")?;
                     }
                 } else if let Some((v1, v2)) = summary.codes().filter(|_| prints_codes) {
-                    // A line of `tenax monitor --teach`.
+                    // One line a picture: v1 v2 age_ms.
                     out::say!("{v1} {v2} {age_ms}")?;
                 }
                 summary.blind

@@ -54,7 +54,6 @@ impl Default for Pvdf {
             spread: Part::of(0.3),
             // `tenax learn` draws a decade for fingers made by chance.
             film_decades: Part::of(0.0),
-            // `tenax learn --turned-films` draws them all.
             film_directions: Part::of(0.0),
             // Recordings: after the bump of 25 ms the film is back within another 10 ms.
             high_pass_hz: Hertz::of(16.0),

@@ -52,7 +52,7 @@ pub fn accept(network: &Network, recordings: &[Recording]) -> anyhow::Result<()>
             bail!(
                 "{session}: a reading of this array differs from the one before by {noise:.1} samples (14 bits); the network \
                  learned on arrays of {low:.1} to {high:.1} and would take the rest for slip or for rest; `tenax train` learns \
-                 from recordings of one's own (docs/training.md)"
+                 from recordings of one's own (docs/array.md)"
             );
         }
     }

@@ -15,7 +15,7 @@ pub fn choose(path: &Path, asked: Option<&str>) -> Result<ArrayRecipe> {
     }
     let named = ArrayRecipe::for_file(path)?.with_context(|| {
         format!(
-            "{}: no recipe is for files of this name; give --recipe FILE.toml (docs/training.md says how to write one) or one \
+            "{}: no recipe is for files of this name; give --recipe FILE.toml (docs/array.md says how to write one) or one \
              of {}",
             path.display(),
             ArrayRecipe::names()

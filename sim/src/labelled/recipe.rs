@@ -1,6 +1,6 @@
 //! How a CSV file becomes labelled recordings of the array.
 //!
-//! `docs/training.md` is the page for people who write one.
+//! `docs/array.md` is the page for people who write one.
 
 use serde::Deserialize;
 use tenax_hal_shim::channel::ARRAY_COUNT;
@@ -56,7 +56,7 @@ pub struct Recordings {
 pub struct Labels {
     pub column: String,
     pub slip: Spanned<Vec<String>>,
-    /// The column with exact onsets (`docs/training.md`). A file may lack it: then slips are made of the labels.
+    /// The column with exact onsets (`docs/array.md`). A file may lack it: then slips are made of the labels.
     pub onsets: Option<String>,
     pub no_slip: Spanned<Vec<String>>,
 }

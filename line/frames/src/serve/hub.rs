@@ -94,9 +94,13 @@ impl Hub {
         let mut write = |frame: Frame| {
             let mut rest = &frame[..];
             while !rest.is_empty() {
+                // Before each write: the next client of a pseudo-terminal would hear the frame twice.
+                if gone.load(Relaxed) {
+                    return None;
+                }
                 match client.write(rest) {
-                    Ok(count @ 1..) if !gone.load(Relaxed) => rest = &rest[count..],
-                    Err(error) if is_silence(&error) && !self.is_closed() && !gone.load(Relaxed) => {}
+                    Ok(count @ 1..) => rest = &rest[count..],
+                    Err(error) if is_silence(&error) && !self.is_closed() => {}
                     _ => return None,
                 }
             }
