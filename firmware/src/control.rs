@@ -126,12 +126,12 @@ impl Control {
     }
 }
 
-/// A command and its answer have no room in a tick in which frames or readings may be sent, the array's network works, muscles and films
-/// are thought about (7000 instructions where a spectrum is due), a record is made (every setting), or a slow frame ends.
+/// A tick in which frames or readings may be sent, that ends a slow frame, or after which muscles and films are thought about (7000
+/// instructions where a spectrum is due) or a record is made (every setting), has no room for a command and its answer as well, streamed
+/// or not.
 fn has_room_for_command(frame: &Frame) -> bool {
     let slot = frame.slot();
     !usize::from(slot).is_multiple_of(FRAMES_PER_RAW)
-        && !(slot_of(Job::ArrayBegins)..=slot_of(Job::MlpDecides)).contains(&slot)
         && ![SENSES_SLOT, slot_of(Job::Think), slot_of(Job::Save)].contains(&slot)
         && !frame.ends_slow_frame()
 }

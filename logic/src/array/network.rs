@@ -11,6 +11,8 @@
 
 use core::ops::Range;
 
+use tenax_smlad::{Aligned, ROWS, dot, dot_rows};
+
 use super::{FEATURES, HIDDEN};
 
 pub const ACTIVATION_MAX: i16 = i16::MAX;
@@ -67,20 +69,21 @@ impl<const I: usize, const O: usize> Layer<I, O> {
         else {
             return;
         };
-        for ((slot, row), &bias) in activations.iter_mut().zip(rows).zip(bias) {
-            *slot = self.activation(dot(row, inputs, bias));
+        let inputs = &Aligned(*inputs);
+        let (blocks, rest) = rows.as_chunks::<ROWS>();
+        let (biases, rest_biases) = bias.as_chunks::<ROWS>();
+        let (slots, rest_slots) = activations.as_chunks_mut::<ROWS>();
+        for ((slots, rows), bias) in slots.iter_mut().zip(blocks).zip(biases) {
+            *slots = dot_rows(rows, inputs, *bias).map(|sum| self.activation(sum));
+        }
+        for ((slot, row), &bias) in rest_slots.iter_mut().zip(rest).zip(rest_biases) {
+            *slot = self.activation(dot(row, &inputs.0, bias));
         }
     }
 
     fn activation(&self, sum: i32) -> i16 {
         (sum >> self.shift).clamp(0, i32::from(ACTIVATION_MAX)) as i16
     }
-}
-
-/// `sum + sum over n of row[n] inputs[n]`: [`Layer::new`] rules an overflow out.
-#[inline]
-fn dot<const I: usize>(row: &[i16; I], inputs: &[i16; I], sum: i32) -> i32 {
-    row.iter().zip(inputs).fold(sum, |sum, (&w, &x)| sum + i32::from(w) * i32::from(x))
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
