@@ -87,6 +87,14 @@ impl Display for Bar {
 /// Bars that are measured together, beside other groups.
 pub type Group<'a> = Box<dyn Fn() -> anyhow::Result<Vec<Bar>> + Sync + Send + 'a>;
 
+/// Characters of a cell of the page.
+const CELL: usize = 160;
+
+/// The promise without its recording's name, if it is about one.
+fn of_recordings(bar: &Bar) -> Option<&str> {
+    bar.promise.split_once(".csv: ").map(|(_, promise)| promise)
+}
+
 /// docs/results.md: the same bytes for the same commit.
 pub fn page(bars: &[Bar]) -> String {
     let mut text = String::from(
@@ -94,10 +102,21 @@ pub fn page(bars: &[Bar]) -> String {
          20 fingertips, the array on a data set of seed 4, recordings with seed 1. No real board was measured.\n\n\
          | promise | measured | limit | verdict |\n|---|---|---|---|\n",
     );
-    for Bar { promise, measured, limit, verdict } in bars.iter().filter(|bar| bar.verdict != Verdict::Clock) {
-        let cell = |text: &str| text.replace('|', "\\|");
-        text +=
-            &format!("| {} | {} | {} | {} |\n", cell(promise), cell(measured), cell(limit), verdict.name());
+    let judged: Vec<&Bar> = bars.iter().filter(|bar| bar.verdict != Verdict::Clock).collect();
+    // One row for recordings of one promise and verdict: the program prints each.
+    for rows in judged.chunk_by(|a, b| {
+        a.verdict == b.verdict && of_recordings(a).is_some_and(|own| of_recordings(b) == Some(own))
+    }) {
+        let Some((first, others)) = rows.split_first() else { continue };
+        let (promise, of) = match of_recordings(first) {
+            Some(promise) if !others.is_empty() => {
+                (promise, format!("{} recordings, the first: ", rows.len()))
+            }
+            _ => (first.promise.as_str(), String::new()),
+        };
+        let cell = |text: &str| text.chars().take(CELL).collect::<String>().replace('|', "\\|");
+        let (measured, limit) = (cell(&(of + &first.measured)), cell(&first.limit));
+        text += &format!("| {} | {measured} | {limit} | {} |\n", cell(promise), first.verdict.name());
     }
     text
 }
