@@ -11,7 +11,7 @@ fn main() {
 
 /// Sets `python` and, with its name in CHROMIUM, `chromium`: `TENAX_CHROMIUM`, or what Debian and others call it.
 fn programs() {
-    println!("cargo::rustc-check-cfg=cfg(chromium, python)");
+    println!("cargo::rustc-check-cfg=cfg(chromium, mcap_reader, python)");
     println!("cargo::rerun-if-env-changed=TENAX_CHROMIUM");
     let is_there =
         |name: &String| Command::new(name).arg("--version").output().is_ok_and(|ran| ran.status.success());
@@ -22,5 +22,20 @@ fn programs() {
     }
     if is_there(&"python3".to_owned()) {
         println!("cargo::rustc-cfg=python");
+    }
+    // The public reader of recordings, where `.ci/python` or a person has installed it.
+    println!("cargo::rerun-if-env-changed=TENAX_PYTHON");
+    if std::path::Path::new("../target/python/pyvenv.cfg").exists() {
+        println!("cargo::rerun-if-changed=../target/python/pyvenv.cfg");
+    }
+    let reads = |name: &String| {
+        Command::new(name).args(["-c", "import mcap_protobuf"]).output().is_ok_and(|ran| ran.status.success())
+    };
+    let own = concat!(env!("CARGO_MANIFEST_DIR"), "/../target/python/bin/python").to_owned();
+    if let Some(name) =
+        std::env::var("TENAX_PYTHON").into_iter().chain([own, "python3".to_owned()]).find(reads)
+    {
+        println!("cargo::rustc-cfg=mcap_reader");
+        println!("cargo::rustc-env=MCAP_PYTHON={name}");
     }
 }

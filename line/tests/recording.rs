@@ -106,14 +106,14 @@ assert compared > 250_000, compared
 ";
 
 #[test]
-#[ignore = "needs Python's mcap and mcap-protobuf-support: TENAX_PYTHON=python cargo test ... -- --ignored"]
+#[cfg_attr(not(mcap_reader), ignore = "no mcap-protobuf-support here: `.ci/python` installs it")]
 fn the_public_reader_finds_the_numbers_of_the_csv() {
-    let python = std::env::var("TENAX_PYTHON").unwrap_or_else(|_| "python3".to_owned());
+    let python = option_env!("MCAP_PYTHON").expect("found when this was compiled");
     let folder = tempfile::tempdir().unwrap();
     let (path, csv) = (folder.path().join("scene.mcap"), folder.path().join("csv"));
     record(&path, &line("pick-up-reflex", true));
     assert!(tenax(&["play", path.to_str().unwrap(), "--csv", csv.to_str().unwrap()]).0);
-    let read = Command::new(&python).args(["-c", READER]).arg(&path).arg(&csv).output().unwrap();
+    let read = Command::new(python).args(["-c", READER]).arg(&path).arg(&csv).output().unwrap();
     assert!(read.status.success(), "{}", String::from_utf8_lossy(&read.stderr));
 }
 
