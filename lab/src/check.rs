@@ -114,7 +114,10 @@ pub fn page(bars: &[Bar]) -> String {
             }
             _ => (first.promise.as_str(), String::new()),
         };
-        let cell = |text: &str| text.chars().take(CELL).collect::<String>().replace('|', "\\|");
+        let cell = |text: &str| {
+            let end = if text.chars().count() > CELL { "..." } else { "" };
+            (text.chars().take(CELL).collect::<String>() + end).replace('|', "\\|")
+        };
         let (measured, limit) = (cell(&(of + &first.measured)), cell(&first.limit));
         text += &format!("| {} | {measured} | {limit} | {} |\n", cell(promise), first.verdict.name());
     }
