@@ -48,8 +48,7 @@ fn what_is_no_boards_line_is_neither_played_nor_watched() {
     let bytes = (0..100_000_u32).map(|n| (n.wrapping_mul(2_654_435_761) >> 13) as u8);
     fs::write(&random, bytes.collect::<Vec<u8>>()).unwrap();
     for file in [empty, random] {
-        for args in
-            [&["play", "--serve-tcp", "0"][..], &["monitor", "--file"], &["monitor", "--plain", "--file"]]
+        for args in [&["play", "--csv", "out"][..], &["monitor", "--file"], &["monitor", "--plain", "--file"]]
         {
             let (done, _, said) = tenax(&[args, &[file.to_str().unwrap()]].concat());
             assert!(

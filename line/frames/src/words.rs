@@ -165,7 +165,7 @@ fn told(answer: &Answer, frame: u32) -> String {
         Answer::Last(last) => match &last.after {
             None => "nothing is kept of a run before".to_owned(),
             Some(fault) => format!(
-                "{} bytes are kept of the seconds before {} ({}): `tenax record --last` fetches them",
+                "{} bytes are kept of the seconds before {} ({})",
                 last.length,
                 in_words(fault),
                 String::from_utf8_lossy(&last.why)

@@ -19,7 +19,7 @@ Examples:
   tenax config list
   tenax config set s1-mv=120 s2-permille=300
   tenax config export hand.toml
-  tenax config diff hand.toml
+  tenax config import hand.toml
   tenax config reset --all";
 
 /// Show and change a board's settings.
@@ -57,11 +57,6 @@ enum Command {
         /// A file that `tenax config export` wrote
         file: PathBuf,
     },
-    /// Settings that differ from their defaults, or from a file
-    Diff {
-        /// A file that `tenax config export` wrote [default: the defaults]
-        file: Option<PathBuf>,
-    },
     /// Set settings back to their defaults
     Reset {
         /// Names of the settings, such as s1-mv s2-permille
@@ -92,17 +87,6 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
                 }
             }
         }
-        Command::Diff { .. } => {
-            let own = all(&mut client)?;
-            for Setting { id, value } in wanted {
-                let name = SettingId::from_number(id).map_or("?", |id| id.row().name);
-                let own = own.iter().find(|setting| setting.id == id).map(|setting| setting.value);
-                if own != Some(value) {
-                    let own = own.map_or_else(|| "unknown".to_owned(), |own| own.to_string());
-                    out::say!("{name} = {own}, there {value}")?;
-                }
-            }
-        }
         Command::Set { .. } | Command::Import { .. } | Command::Reset { .. } => {
             for setting in &wanted {
                 set(&mut client, *setting)?;
@@ -112,20 +96,19 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// The settings that a command sets or compares.
+/// The settings that a command sets.
 fn wanted(command: &Command) -> anyhow::Result<Vec<Setting>> {
     let default = |id: SettingId| Setting { id: id.number(), value: id.row().default };
     match command {
         Command::List | Command::Export { .. } => Ok(Vec::new()),
         Command::Get { name } => settings::named(name).map(|_| Vec::new()),
         Command::Set { settings } => Ok(settings.clone()),
-        Command::Diff { file: None } => Ok(SettingId::ALL.into_iter().map(default).collect()),
-        Command::Import { file } | Command::Diff { file: Some(file) } => of_file(file),
+        Command::Import { file } => of_file(file),
         Command::Reset { all: true, .. } => {
             Ok(SettingId::ALL.into_iter().filter(|id| *id != SettingId::LineTrusted).map(default).collect())
         }
         Command::Reset { names, .. } if names.is_empty() => {
-            bail!("name the settings to reset, or give --all; `tenax config diff` shows which differ")
+            bail!("name the settings to reset, or give --all; `tenax config list` shows value and default")
         }
         Command::Reset { names, .. } => names.iter().map(|name| settings::named(name).map(default)).collect(),
     }
