@@ -14,7 +14,7 @@ use super::port::Line;
 use tenax_frames::link::{ANSWER_WITHIN, Client};
 use tenax_frames::record::{self, Recording};
 use tenax_frames::tool::out;
-use tenax_frames::tool::status::Status;
+use tenax_frames::tool::progress::Progress;
 use tenax_frames::words::seconds;
 
 /// Settings are saved every 3 s at most.
@@ -51,14 +51,13 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     let mut recording = Recording::create(&path)?;
     if args.from_start {
         stream_at_start(&mut client)?;
+    } else if client.can_send() {
+        client.send(&Down::About)?;
     }
     let stopped = Arc::new(AtomicBool::new(false));
     signal_hook::flag::register(signal_hook::consts::SIGINT, Arc::clone(&stopped))
         .context("cannot listen for Ctrl-C")?;
-    if !args.from_start && client.can_send() {
-        client.send(&Down::About)?;
-    }
-    let status = Status::new("record");
+    let status = Progress::new("record", 1.0);
     let (mut began, mut waits, mut is_joined) = (Instant::now(), args.from_start, false);
     let is_over = |began: Instant| args.seconds.is_some_and(|s| began.elapsed().as_secs_f64() >= s);
     while !stopped.load(Relaxed) && (waits || !is_over(began)) {
@@ -69,7 +68,8 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
             Ok(Some(heard)) if waits && !matches!(heard.received.message, Up::Hello { .. }) => {}
             Ok(Some(heard)) => {
                 if std::mem::take(&mut waits) {
-                    status.print(|| out::note!("the board has started: recording"));
+                    status.clear();
+                    out::note!("the board has started: recording");
                     began = Instant::now();
                 }
                 let first = match &heard.received.message {
@@ -78,13 +78,12 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
                     _ => None,
                 };
                 if let Some(frame @ 1..) = first.filter(|_| !is_joined) {
-                    status.print(|| {
-                        out::note!(
-                            "it begins {:.1} s after the board's start: it can be watched, plotted and exported, but not \
-                             replayed. For one that can be: tenax record --from-start",
-                            seconds(frame)
-                        );
-                    });
+                    status.clear();
+                    out::note!(
+                        "it begins {:.1} s after the board's start: it can be watched, plotted and exported, but not \
+                         replayed. For one that can be: tenax record --from-start",
+                        seconds(frame)
+                    );
                 }
                 is_joined |= first.is_some();
                 recording.take(&heard.received);
@@ -92,12 +91,11 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
             Ok(None) => {}
             Err(_) => break,
         }
-        status.say_with(|_| client.counts().to_string());
+        status.say(|_| client.counts().to_string());
     }
-    drop(status);
     recording.finish().with_context(|| format!("cannot write {}", path.display()))?;
-    let lasted = Duration::from_secs(began.elapsed().as_secs());
-    out::note!("{} in {lasted:?}, written to {}", client.counts(), path.display());
+    status.clear();
+    out::note!("{}, written to {}", client.counts(), path.display());
     Ok(ExitCode::SUCCESS)
 }
 
