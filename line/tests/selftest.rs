@@ -12,7 +12,7 @@ use tenax_frames::link::{Encoder, Inbox};
 use tenax_hal_shim::channel::{CHANNELS, COUNT, MOTOR_CURRENT, Role, STRAIN, by_name};
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::{Down, Up};
-use tenax_line::guide::selftest::{Selftest, Verdict, named};
+use tenax_line::guide::selftest::{Selftest, Verdict};
 use tenax_scene::plant::{Pins, Plant};
 use tenax_scene::{Act, SceneFile, World};
 use tenax_sim::board::Recorder;
@@ -88,7 +88,7 @@ fn tested(faults: &str, seed: u64) -> (Selftest, Vec<String>) {
     }
     let scene = SceneFile::parse(&(bench + faults), "bench").unwrap_or_else(|error| panic!("{error}"));
     let talk = Arc::<Mutex<Talk>>::default();
-    let test = Selftest::new(named(&[]).unwrap(), false, 8);
+    let test = Selftest::named(&[], false, false, 8).unwrap();
     let mut tester = Tester { inbox: Inbox::default(), test, talk: Arc::clone(&talk) };
     let world = World::new(&scene, seed);
     let bench = Bench { world, talk: Arc::clone(&talk), encoder: Encoder::default(), scans: 0 };

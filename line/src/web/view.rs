@@ -271,7 +271,7 @@ impl View {
                 }
                 let flag = |id| self.setting(id).context("the board has not said its settings yet");
                 let (head, no_wearer) = (flag(SettingId::Head)? != 0, flag(SettingId::NoWearer)? != 0);
-                self.selftest = Some(Selftest::begin_named(channels, head, no_wearer, TOUCH_S)?);
+                self.selftest = Some(Selftest::named(channels, head, no_wearer, TOUCH_S)?);
                 self.selftests += 1;
                 self.lines = 0;
             }
@@ -315,7 +315,7 @@ impl View {
         let result = |&channel: &usize| {
             let verdict = test.verdicts[channel];
             let passes = verdict.map(|verdict| matches!(verdict, Verdict::Pass(_)));
-            let words = verdict.map(|verdict| test.words(channel, verdict));
+            let words = verdict.map(|verdict| verdict.words(channel));
             (CHANNELS[channel].name, input(channel), passes, words)
         };
         json!({
