@@ -40,9 +40,6 @@ pub struct View {
     /// Lost channels and capabilities, each with its words.
     faults: BTreeMap<String, String>,
     selftest: Option<Selftest>,
-    /// Self-tests that were begun, and lines of the last that pages have.
-    selftests: u64,
-    lines: usize,
 }
 
 fn push<T>(all: &mut VecDeque<T>, most: usize, one: T) {
@@ -50,10 +47,6 @@ fn push<T>(all: &mut VecDeque<T>, most: usize, one: T) {
         all.pop_front();
     }
     all.push_back(one);
-}
-
-fn thousandths(value: impl Into<f64>) -> f64 {
-    value.into() / 1e3
 }
 
 impl View {
@@ -68,7 +61,6 @@ impl View {
         let mut state = self.state.clone();
         state.insert("log".to_owned(), json!(self.log));
         state.insert("points".to_owned(), json!(self.points));
-        state.insert("selftest".to_owned(), self.selftest_state(0));
         // There is room.
         let _sent = page.try_send(Value::Object(state));
         self.pages.push(page);
@@ -136,7 +128,6 @@ impl View {
         }
         let message = &received.message;
         match message {
-            Up::Raw(_) | Up::Taken { .. } => {}
             Up::Slow(slow) => self.slow(slow),
             Up::Senses(senses) => {
                 let all = CHANNELS.iter().zip(&senses.samples);
@@ -151,25 +142,23 @@ impl View {
             }
             Up::Answer { answer: Answer::Setting(setting), .. } => self.set(&[*setting]),
             Up::Answer { answer: Answer::Settings(all), .. } => self.set(all),
-            Up::Answer { answer: Answer::Last(last), .. } if last.after.is_some() && last.from == 0 => {
-                self.say(&words(message));
-            }
-            Up::Answer { .. } => {}
-            Up::Hello { .. } => {
-                self.begin_anew();
-                self.say(&words(message));
-            }
-            Up::Event(event) => {
-                match event.kind {
-                    EventKind::Fault(fault) => self.fault(&fault),
-                    EventKind::Stroke { s2_permille, .. } => {
-                        self.set(&[Setting { id: SettingId::S2.number(), value: s2_permille.into() }]);
-                    }
-                    _ => {}
+            Up::Hello { .. } => self.begin_anew(),
+            Up::Event(event) => match event.kind {
+                EventKind::Fault(fault) => self.fault(&fault),
+                EventKind::Stroke { s2_permille, .. } => {
+                    self.set(&[Setting { id: SettingId::S2.number(), value: s2_permille.into() }]);
                 }
-                self.say(&words(message));
-            }
-            Up::Saved { .. } | Up::Restored(_) => self.say(&words(message)),
+                _ => {}
+            },
+            _ => {}
+        }
+        let is_logged = match message {
+            Up::Answer { answer: Answer::Last(last), .. } => last.after.is_some() && last.from == 0,
+            Up::Hello { .. } | Up::Event(_) | Up::Saved { .. } | Up::Restored(_) => true,
+            _ => false,
+        };
+        if is_logged {
+            self.say(&words(message));
         }
     }
 
@@ -185,9 +174,9 @@ impl View {
         let point = json!([
             seconds(slow.frame),
             mv_from_sample(vibration),
-            slow.forces.and_then(|forces| forces.ratio_permille).map(thousandths),
-            thousandths(slow.s2_permille),
-            slow.forces.map(|forces| thousandths(forces.load_mn)),
+            slow.forces.and_then(|forces| forces.ratio_permille).map(|permille| f64::from(permille) / 1e3),
+            f64::from(slow.s2_permille) / 1e3,
+            slow.forces.map(|forces| f64::from(forces.load_mn) / 1e3),
             slow.flexor_mv,
             slow.extensor_mv,
         ]);
@@ -272,8 +261,6 @@ impl View {
                 let flag = |id| self.setting(id).context("the board has not said its settings yet");
                 let (head, no_wearer) = (flag(SettingId::Head)? != 0, flag(SettingId::NoWearer)? != 0);
                 self.selftest = Some(Selftest::named(channels, head, no_wearer, TOUCH_S)?);
-                self.selftests += 1;
-                self.lines = 0;
             }
             Some((first, [])) if first == "skip" => {
                 self.selftest.as_mut().context("no test goes on")?.skip();
@@ -303,30 +290,25 @@ impl View {
         }
     }
 
+    /// Tells the pages what the self-test asks, reads and has found.
     fn tell_selftest(&mut self) {
-        self.tell(json!({ "selftest": self.selftest_state(self.lines) }));
-        self.lines = self.selftest.as_ref().map_or(0, |test| test.said.len());
-    }
-
-    /// The state of the self-test: the lines after those that are known, and the verdicts if there are such lines.
-    fn selftest_state(&self, known: usize) -> Value {
-        let Some(test) = &self.selftest else { return Value::Null };
-        let lines = &test.said[known..];
-        let result = |&channel: &usize| {
-            let verdict = test.verdicts[channel];
-            let passes = verdict.map(|verdict| matches!(verdict, Verdict::Pass(_)));
-            let words = verdict.map(|verdict| verdict.words(channel));
-            (CHANNELS[channel].name, input(channel), passes, words)
-        };
-        json!({
-            "number": self.selftests,
-            "prompt": test.prompt(),
-            "over": test.is_over(),
-            "passes": test.passes(),
-            "failed": test.failed,
-            "level": test.level(),
-            "lines": lines,
-            "results": (!lines.is_empty()).then(|| test.channels.iter().map(result).collect::<Vec<_>>()),
-        })
+        let state = self.selftest.as_ref().map(|test| {
+            let result = |&channel: &usize| {
+                let verdict = test.verdicts[channel];
+                let passes = verdict.map(|verdict| matches!(verdict, Verdict::Pass(_)));
+                let words = verdict.map(|verdict| verdict.words(channel));
+                (CHANNELS[channel].name, input(channel), passes, words)
+            };
+            json!({
+                "prompt": test.prompt(),
+                "over": test.is_over(),
+                "passes": test.passes(),
+                "failed": test.failed,
+                "level": test.level(),
+                "lines": test.said,
+                "results": test.channels.iter().map(result).collect::<Vec<_>>(),
+            })
+        });
+        self.tell(json!({ "selftest": state }));
     }
 }
