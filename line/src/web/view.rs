@@ -111,7 +111,6 @@ impl View {
             News::Played(play::Told::Message(heard)) => self.hear(&heard),
             News::Played(play::Told::At(playing)) => self.tell(json!({ "playing": playing })),
             News::Played(play::Told::Again) => self.begin_anew(),
-            News::Played(play::Told::Over) => {}
             News::Answered(command, Ok(answer)) => {
                 self.say(&format!("> {}", answer_words(&command, &answer)));
             }
