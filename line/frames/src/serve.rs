@@ -14,10 +14,10 @@ use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, sync_channel};
 use std::sync::{Arc, Mutex};
 use std::thread::{self, JoinHandle};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use self::hub::{Frame, Framer, Hub};
-use crate::truth::{Bench, Key, Truth};
+use crate::truth::{Key, Truth};
 
 /// Frames on their way down to the board; a client that sends more waits.
 const DOWN_FRAMES: usize = 64;
@@ -93,7 +93,7 @@ impl Server {
         let (act, acts) = sync_channel(DOWN_FRAMES);
         let mut truth = None;
         if let Some(port) = options.truth {
-            let bench = serde_json::to_string(&Bench { keys: options.keys.clone() })? + "\n";
+            let bench = serde_json::to_string(&options.keys)? + "\n";
             let hub = Hub::new(act, b'\n', Some(Frame::from(bench.as_bytes())));
             let (place, door) = tcp::serve(port, &hub)?;
             doors.push(door);
@@ -129,21 +129,11 @@ impl Server {
         &self.places
     }
 
-    pub fn tally(&self) -> Tally {
-        self.hub.tally()
-    }
-
     /// Ends when every client has read what is left, at most 0.5 s later.
     pub fn close(self) -> Tally {
-        self.hub.no_more();
-        let began = Instant::now();
-        while self.hub.writers() > 0 && began.elapsed() < LAST_READ {
-            thread::sleep(Duration::from_millis(5));
-        }
-        self.hub.close();
+        self.hub.close(LAST_READ);
         if let Some((_, truth)) = &self.truth {
-            truth.no_more();
-            truth.close();
+            truth.close(Duration::ZERO);
         }
         for door in self.doors {
             let _panicked = door.join();

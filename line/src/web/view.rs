@@ -105,9 +105,7 @@ impl View {
                 }
             }
             News::Scene(truth::Told::Truth(truth)) => self.tell(json!({ "truth": truth })),
-            News::Scene(truth::Told::Bench(bench)) => {
-                self.tell(json!({ "bench": bench.map(|bench| bench.keys) }));
-            }
+            News::Scene(truth::Told::Bench(keys)) => self.tell(json!({ "bench": keys })),
             News::Played(play::Told::Message(heard)) => self.hear(&heard),
             News::Played(play::Told::At(playing)) => self.tell(json!({ "playing": playing })),
             News::Played(play::Told::Again) => self.begin_anew(),

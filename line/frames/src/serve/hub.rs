@@ -1,12 +1,11 @@
-//! Clients of a line: each gets the frames that come up, and theirs go down. It never waits: what a client has no room for is dropped and
-//! counted.
+//! Clients of a line: each gets the frames that come up, and theirs go down. What a client has no room for is dropped and counted.
 
 use std::io::{Read, Write};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use tenax_hal_shim::wire::FRAME_MAX;
 
@@ -20,6 +19,7 @@ const CLIENT_FRAMES: usize = 256;
 
 pub struct Hub {
     clients: Mutex<Clients>,
+    /// Clients that are being written to.
     writers: AtomicUsize,
     closed: AtomicBool,
     /// The first frame for each client.
@@ -39,7 +39,7 @@ struct Clients {
 impl Hub {
     pub fn new(down: SyncSender<Vec<u8>>, end: u8, greeting: Option<Frame>) -> Arc<Self> {
         let clients = Mutex::new(Clients { senders: Some(Vec::new()), ..Clients::default() });
-        let (writers, closed) = (AtomicUsize::new(0), AtomicBool::new(false));
+        let (writers, closed) = (AtomicUsize::default(), AtomicBool::default());
         Arc::new(Self { clients, writers, closed, greeting, down, end })
     }
 
@@ -66,22 +66,18 @@ impl Hub {
         });
     }
 
-    /// The line is over; clients get what is on its way.
-    pub fn no_more(&self) {
+    /// The line is over. Ends when every client has read what is on its way, or the time is over.
+    pub fn close(&self, within: Duration) {
         self.clients().senders = None;
-    }
-
-    pub fn close(&self) {
+        let began = Instant::now();
+        while self.writers.load(Relaxed) > 0 && began.elapsed() < within {
+            thread::sleep(Duration::from_millis(5));
+        }
         self.closed.store(true, Relaxed);
     }
 
     pub fn is_closed(&self) -> bool {
         self.closed.load(Relaxed)
-    }
-
-    /// Clients that are being written to.
-    pub fn writers(&self) -> usize {
-        self.writers.load(Relaxed)
     }
 
     pub fn tally(&self) -> Tally {
@@ -115,10 +111,9 @@ impl Hub {
         let (mut framer, mut buffer) = (Framer::ending(self.end), [0; 4096]);
         while !self.is_closed() {
             match client.read(&mut buffer) {
-                Ok(0) => break,
-                Ok(count) => self.pass_on(&mut framer, &buffer[..count]),
+                Ok(count @ 1..) => self.pass_on(&mut framer, &buffer[..count]),
                 Err(error) if is_silence(&error) => {}
-                Err(_) => break,
+                _ => break,
             }
         }
     }
@@ -142,7 +137,7 @@ impl Hub {
 }
 
 /// Cuts a stream of bytes after each `end`: into frames, or into lines.
-#[derive(Debug, Default)]
+#[derive(Default)]
 pub struct Framer {
     bytes: Vec<u8>,
     end: u8,

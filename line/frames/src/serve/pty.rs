@@ -46,7 +46,7 @@ impl Pty {
         [self.path.clone()].into_iter().chain(link).collect()
     }
 
-    /// Serves one client after the other until the hub is closed.
+    /// Serves clients until the hub is closed.
     pub fn serve(mut self, hub: &Arc<Hub>) {
         let mut client: Option<Arc<AtomicBool>> = None;
         let (mut framer, mut buffer) = (Framer::default(), [0; 4096]);
