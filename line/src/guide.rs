@@ -12,10 +12,8 @@ use tenax_frames::link::{ANSWER_WITHIN, Client};
 use tenax_frames::words::refusal_words;
 use tenax_hal_shim::wire::{Answer, Down, Forces, Up};
 
-/// Prints a line for the person.
 pub type Say<'a> = &'a mut dyn FnMut(&str) -> anyhow::Result<()>;
 
-/// Sends a command. Fails if the board refuses it; says what to do.
 fn ask(client: &mut Client, command: Down) -> anyhow::Result<()> {
     match client.ask(&command, ANSWER_WITHIN)? {
         Answer::Done => Ok(()),
@@ -24,7 +22,6 @@ fn ask(client: &mut Client, command: Down) -> anyhow::Result<()> {
     }
 }
 
-/// Takes messages until `found` gives something.
 fn wait_for<T>(
     client: &mut Client,
     within: Duration,

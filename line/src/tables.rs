@@ -21,7 +21,6 @@ const SIGNALS: &str = "\
 
 ";
 
-/// Pins and valid voltages of every channel.
 pub fn wiring() -> String {
     let mut page = format!(
         "{SIGNALS}Every pin is read {SCAN_HZ} times a second. Direct pins give {FRAME_HZ} samples a second, switched \
@@ -43,7 +42,6 @@ pub fn wiring() -> String {
     page
 }
 
-/// Place of the channel's pin in the scan.
 fn rank(channel: &Channel) -> usize {
     match channel.input {
         Input::Direct { rank } => rank.into(),
@@ -61,7 +59,6 @@ pub fn input(channel: usize) -> String {
     }
 }
 
-/// Every setting with number, unit, range, default and meaning.
 pub fn settings() -> String {
     let mut page = String::from(
         "# Settings\n\nThe number names the setting on the wire and in flash.\n\n\

@@ -59,12 +59,10 @@ impl Web {
         Ok(Self { server, view, commands, bench, control, port })
     }
 
-    /// Address of the page.
     pub fn place(&self) -> String {
         format!("http://127.0.0.1:{}/", self.port)
     }
 
-    /// Serves the page until the process ends.
     pub fn serve(&self) {
         thread::scope(|scope| {
             for request in self.server.incoming_requests() {

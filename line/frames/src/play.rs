@@ -15,7 +15,6 @@ use crate::words::seconds;
 const TOLD_EACH_S: f64 = 0.1;
 /// Identity and settings of the board come within this time, s: they are told wherever playing begins.
 const BEGINNING_S: f64 = 2.0;
-/// The slowest and the fastest speed, times real time.
 const SPEEDS: (f64, f64) = (0.01, 100.0);
 
 /// A recording's line, and time (s) and end (bytes) of each frame.
@@ -25,7 +24,6 @@ pub struct Reel {
 }
 
 impl Reel {
-    /// Fails if the file cannot be read, or holds no message of a board.
     pub fn open(path: &Path) -> anyhow::Result<Self> {
         let line = line_of(path)?;
         let (mut inbox, mut frames) = (Inbox::default(), Vec::new());
@@ -61,9 +59,7 @@ impl Reel {
 pub struct Playing {
     pub at_s: f64,
     pub of_s: f64,
-    /// Times real time.
     pub speed: f64,
-    /// It begins again when it is over.
     pub repeat: bool,
     pub paused: bool,
 }
@@ -148,7 +144,6 @@ pub fn play(reel: &Reel, controls: &Receiver<String>, tell: &mut dyn FnMut(Told)
     }
 }
 
-/// Tells the board's identity and settings, from the beginning of the recording.
 fn tell_beginning(reel: &Reel, before_s: f64, tell: &mut dyn FnMut(Told) -> bool) -> bool {
     let end = reel.frames.partition_point(|(at_s, _)| *at_s < BEGINNING_S.min(before_s));
     let mut inbox = Inbox::default();

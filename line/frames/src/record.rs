@@ -33,7 +33,6 @@ pub fn name_now() -> PathBuf {
     PathBuf::from(format!("tenax-{}.mcap", now.replace(['-', ':'], "")))
 }
 
-/// A recording that is being written.
 pub struct Recording {
     file: Writer<NoSeek<BufWriter<File>>>,
     /// Number of each topic's channel, and of its next message.
@@ -41,7 +40,6 @@ pub struct Recording {
     /// When the file was begun, and the board's time 0 by this computer's clock, if that is known.
     began_ns: u64,
     zero_ns: Option<u64>,
-    /// The newest frame.
     last: u32,
     about: Option<About>,
     error: Option<anyhow::Error>,
@@ -127,12 +125,10 @@ impl Recording {
         self.file.write_to_known_channel(&header, &protobuf::message(&row.fields))
     }
 
-    /// When a frame ended, ns of the file's time.
     fn at_ns(&self, frame: u32) -> u64 {
         self.zero_ns.unwrap_or(0) + in_ns(frame)
     }
 
-    /// Records the messages in bytes that came up a line.
     pub fn line(&mut self, bytes: &[u8]) {
         for &byte in bytes {
             if let Some(Ok(heard)) = self.inbox.push(byte) {

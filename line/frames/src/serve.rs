@@ -27,13 +27,11 @@ const LAST_READ: Duration = Duration::from_millis(500);
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Options {
     pub pty: bool,
-    /// A symlink to it.
     pub at: Option<PathBuf>,
     /// TCP port of 127.0.0.1; 0: any free port.
     pub tcp: Option<u16>,
     /// TCP port of 127.0.0.1 for the scene's true state; 0: any free port.
     pub truth: Option<u16>,
-    /// What can be done at the scene's bench.
     pub keys: Vec<Key>,
 }
 
@@ -54,7 +52,6 @@ impl Display for Tally {
 /// A server's other end, for the board that it serves, or for one after the other.
 #[derive(Clone)]
 pub struct Down {
-    /// Frames that clients send to the board.
     pub bytes: Arc<Mutex<Receiver<Vec<u8>>>>,
     pub teller: Teller,
 }
@@ -124,7 +121,6 @@ impl Server {
         self.acts.take()
     }
 
-    /// Ports and addresses, for `tenax monitor --port`.
     pub fn places(&self) -> &[String] {
         &self.places
     }
@@ -142,7 +138,6 @@ impl Server {
     }
 }
 
-/// Sends the scene's true state to its clients.
 #[derive(Clone, Default)]
 pub struct Teller(Option<Arc<Hub>>);
 

@@ -9,7 +9,6 @@ use tenax_logic::setting::SettingId;
 
 use crate::words::identity_words;
 
-/// The setting of this name. An error names all that there are.
 pub fn named(name: &str) -> anyhow::Result<SettingId> {
     SettingId::by_name(name).with_context(|| {
         let names = SettingId::ALL.map(|id| id.row().name).join(", ");
@@ -17,7 +16,6 @@ pub fn named(name: &str) -> anyhow::Result<SettingId> {
     })
 }
 
-/// A board's settings as a TOML file that names the board.
 pub fn backup(about: &About, settings: &[Setting]) -> String {
     let now = humantime::format_rfc3339_seconds(SystemTime::now());
     format!(

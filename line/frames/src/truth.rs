@@ -27,7 +27,6 @@ pub struct Truth {
     pub grip_n: f64,
     /// The least that would hold, N; 0 while the hand carries nothing.
     pub needed_n: f64,
-    /// Number of unintended slips so far.
     pub slips: usize,
     /// Distance in them, mm.
     pub slipped_mm: f64,
@@ -41,7 +40,6 @@ pub type Key = (String, String);
 #[serde(untagged)]
 pub enum Told {
     Truth(Truth),
-    /// None: the scene is gone.
     Bench(Option<Vec<Key>>),
 }
 
@@ -58,7 +56,6 @@ pub fn watch(target: &Target, acts: &Receiver<String>, tell: &mut dyn FnMut(Told
     }
 }
 
-/// Listens until the line ends. False: `tell` returned false.
 fn listen(line: Line, acts: &Receiver<String>, tell: &mut dyn FnMut(Told) -> bool) -> bool {
     let (mut lines, mut text, mut down) = (BufReader::new(line.up), String::new(), line.down);
     loop {

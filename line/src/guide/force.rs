@@ -19,7 +19,6 @@ const STILL_N: f64 = 0.04;
 const BETWEEN: (f64, f64) = (0.5, 2.0);
 /// Part of a weight below which it is taken off.
 const OFF_PART: f64 = 0.1;
-/// Time for a person.
 const PATIENCE: Duration = Duration::from_secs(120);
 /// Largest error of a gain that needs no change.
 const GAIN_OFF: f64 = 0.05;
@@ -27,7 +26,6 @@ const COMPARED: [SettingId; 2] = [SettingId::ForceCeiling, SettingId::Loaded];
 /// Standard gravity, m/s^2.
 const GRAVITY: f64 = 9.806_65;
 
-/// A weight and the board's reading of it, N.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Weighed {
     true_n: f64,
@@ -40,7 +38,6 @@ fn gain(weighed: &[Weighed]) -> f64 {
     sum(|own| own.read_n * own.true_n) / sum(|own| own.true_n * own.true_n)
 }
 
-/// The table of the weights, and what follows from it.
 fn report(weighed: &[Weighed]) -> String {
     let gain = gain(weighed);
     let mut text =

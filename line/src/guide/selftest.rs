@@ -55,18 +55,15 @@ const fn demands(role: Role) -> (f64, [f64; 2]) {
     }
 }
 
-/// Voltages and moves in mV.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Verdict {
     /// It moved by this, or stands right and cannot be touched.
     Pass(f64),
     Dead(f64),
     Shorted(f64),
-    /// It never changes.
     Stuck(f64),
     /// It does not stand where its kind does.
     Off(f64),
-    /// Nothing moved.
     Silent,
     /// This channel moved in its place.
     Moved(usize),
@@ -75,7 +72,6 @@ pub enum Verdict {
 }
 
 impl Verdict {
-    /// The verdict on a channel, for a person.
     pub fn words(self, channel: usize) -> String {
         let Channel { rest_mv, name, .. } = CHANNELS[channel];
         match self {
@@ -103,7 +99,6 @@ fn mean(rows: &[Row]) -> Row {
     std::array::from_fn(|n| rows.iter().map(|row| row[n]).sum::<f64>() / rows.len() as f64)
 }
 
-/// Reading of the channel that is asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Level {
     pub mv: f64,
@@ -124,19 +119,15 @@ enum Step {
 
 pub struct Selftest {
     roles: [Role; COUNT],
-    /// In the order in which they are asked for.
     pub channels: Vec<usize>,
     /// None: the channel was not asked for.
     pub verdicts: [Option<Verdict>; COUNT],
-    /// Lines for the person, the oldest first.
     pub said: Vec<String>,
-    /// Why the test cannot go on.
     pub failed: Option<String>,
     heard: Instant,
     limit: u32,
     step: Step,
     began: Option<u32>,
-    /// Frame of the newest reading.
     last: u32,
     rows: Vec<Row>,
     /// Mean of the last readings in which nothing moved: what is held, creeps or drifts is no touch.
@@ -180,7 +171,6 @@ impl Selftest {
         self.step == Step::Over
     }
 
-    /// The instruction for now.
     pub fn prompt(&self) -> String {
         match self.step {
             Step::Rest => REST_PROMPT.to_owned(),
@@ -190,7 +180,6 @@ impl Selftest {
         }
     }
 
-    /// Reading of the channel that is asked for.
     pub fn level(&self) -> Option<Level> {
         let Step::Asked(n, ..) = self.step else { return None };
         let (asked, row) = (self.channels[n], self.rows.last()?);
@@ -198,7 +187,6 @@ impl Selftest {
         Some(Level { mv: row[asked], moved_mv: self.moved(row, asked) * needed_mv, needed_mv })
     }
 
-    /// Leaves out the channel that is asked for.
     pub fn skip(&mut self) {
         if let Step::Asked(n, ..) = self.step {
             self.begin(Step::Stills(n + 1, false), self.last);
@@ -219,7 +207,6 @@ impl Selftest {
         }
     }
 
-    /// Ends the test, unless it is over.
     pub fn fail(&mut self, why: &str) {
         if !self.is_over() {
             self.failed.get_or_insert_with(|| why.to_owned());
@@ -309,7 +296,6 @@ impl Selftest {
         self.said.push(self.asks(n, again));
     }
 
-    /// The prompt for the channel in this place.
     fn asks(&self, n: usize, again: bool) -> String {
         let channel = self.channels[n];
         let (name, of) = (CHANNELS[channel].name, self.channels.len());
@@ -349,7 +335,6 @@ impl Selftest {
         (0..COUNT).any(|channel| self.moved(row, channel) >= 1.0)
     }
 
-    /// Judges a touch.
     fn touched(&mut self, n: usize, again: bool, frame: u32) {
         let asked = self.channels[n];
         let peak = |channel: usize| self.rows.iter().map(|row| self.moved(row, channel)).fold(0.0, f64::max);

@@ -15,7 +15,6 @@ const AGAIN_AFTER: Duration = Duration::from_millis(500);
 #[derive(Debug)]
 pub enum News {
     Open,
-    /// The line is gone, with the reason.
     Gone(String),
     /// A message, or why a frame is none; the counts so far.
     Frame(Result<Heard, BadFrame>, Counts),

@@ -20,7 +20,6 @@ use super::source::News;
 use crate::guide::selftest::{Selftest, Verdict};
 use crate::tables::input;
 
-/// Slow frames (10 s) and lines of the log for a page that is opened later.
 const HISTORY: usize = 800;
 const LOG: usize = 500;
 /// Changes that a page may be behind: 20 s. A page that is further behind is dropped, and connects again.
@@ -50,7 +49,6 @@ fn push<T>(all: &mut VecDeque<T>, most: usize, one: T) {
 }
 
 impl View {
-    /// The merged changes.
     pub const fn state(&self) -> &Map<String, Value> {
         &self.state
     }
@@ -73,13 +71,11 @@ impl View {
         self.pages.retain(|page| page.try_send(change.clone()).is_ok());
     }
 
-    /// Adds a line to the log.
     pub fn say(&mut self, line: &str) {
         push(&mut self.log, LOG, line.trim_start().to_owned());
         self.tell(json!({ "log": [line.trim_start()] }));
     }
 
-    /// Takes what came, and tells the pages.
     pub fn take(&mut self, news: News) {
         self.test(&news);
         match news {
@@ -228,7 +224,6 @@ impl View {
         self.tell(json!({ "faults": self.faults.values().collect::<Vec<_>>() }));
     }
 
-    /// The settings as a file, once the board has sent its identity.
     pub fn backup(&self) -> Option<String> {
         let settings: Vec<Setting> =
             self.settings.iter().map(|(&id, &value)| Setting { id, value }).collect();
@@ -269,7 +264,6 @@ impl View {
         Ok(())
     }
 
-    /// Lets the self-test take what came.
     fn test(&mut self, news: &News) {
         let Some(test) = &mut self.selftest else { return };
         let message = match news {

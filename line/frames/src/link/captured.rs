@@ -10,7 +10,6 @@ use tenax_hal_shim::wire::{BadFrame, VERSION};
 use super::Inbox;
 use crate::protobuf;
 
-/// The topic of a recording that holds the line's bytes.
 pub const TOPIC: &str = "/line";
 
 /// The line's bytes in a recording or a captured line. Of a recording that was cut short, its whole chunks.
@@ -51,7 +50,6 @@ fn recorded(path: &Path, bytes: &[u8]) -> anyhow::Result<Vec<u8>> {
     Ok(line)
 }
 
-/// Whether a file's name is that of a recording.
 pub fn is_recording(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("mcap"))
 }

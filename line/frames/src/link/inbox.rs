@@ -7,7 +7,6 @@ use tenax_hal_shim::wire::{BadFrame, Received, Receiver, Up};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
     pub messages: u64,
-    /// Frames that were no message.
     pub bad_frames: u64,
     /// Messages missing by their numbers: dropped by the board, or lost on the way.
     pub missed: u64,
@@ -23,11 +22,9 @@ impl Display for Counts {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Heard {
     pub received: Received<Up>,
-    /// Messages missing between the last one and this.
     pub missed: u16,
 }
 
-/// Takes a line's bytes as they come and gives messages.
 #[derive(Debug, Default)]
 pub struct Inbox {
     receiver: Receiver,

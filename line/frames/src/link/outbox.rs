@@ -28,7 +28,6 @@ impl Encoder {
     }
 }
 
-/// Sends commands as frames.
 #[derive(Debug)]
 pub struct Outbox<W> {
     line: W,
@@ -40,7 +39,6 @@ impl<W: Write> Outbox<W> {
         Self { line, encoder: Encoder::default() }
     }
 
-    /// Sends one command; returns its number, which its answer names.
     pub fn send(&mut self, command: &Down) -> io::Result<u16> {
         let (number, frame) = self.encoder.frame(command);
         self.line.write_all(frame)?;

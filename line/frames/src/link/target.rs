@@ -21,7 +21,6 @@ pub enum Target {
     Port(String),
     /// HOST:PORT, written `tcp:HOST:PORT`.
     Tcp(String),
-    /// A recording or a captured line.
     File(PathBuf),
 }
 
@@ -60,7 +59,6 @@ impl Display for Target {
 }
 
 impl Target {
-    /// Opens the line. An error says what is wrong, and what to do about it.
     pub fn open(&self) -> anyhow::Result<Line> {
         match self {
             Self::Port(name) => open_port(name),
@@ -116,7 +114,6 @@ fn holder(port: &str) -> Option<String> {
     })
 }
 
-/// Whether a path leads to a pseudo-terminal.
 fn is_pseudo(name: &str) -> bool {
     let path = std::fs::canonicalize(name).unwrap_or_default();
     path.starts_with("/dev/pts")

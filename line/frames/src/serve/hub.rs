@@ -19,10 +19,8 @@ const CLIENT_FRAMES: usize = 256;
 
 pub struct Hub {
     clients: Mutex<Clients>,
-    /// Clients that are being written to.
     writers: AtomicUsize,
     closed: AtomicBool,
-    /// The first frame for each client.
     greeting: Option<Frame>,
     /// Frames that go down, and the byte that ends one.
     down: SyncSender<Vec<u8>>,
@@ -31,7 +29,6 @@ pub struct Hub {
 
 #[derive(Default)]
 struct Clients {
-    /// None: no more frames come.
     senders: Option<Vec<SyncSender<Frame>>>,
     tally: Tally,
 }
@@ -106,7 +103,6 @@ impl Hub {
         self.writers.fetch_sub(1, Relaxed);
     }
 
-    /// Passes on what a client sends until it leaves or the hub is closed.
     pub fn read(&self, client: &mut dyn Read) {
         let (mut framer, mut buffer) = (Framer::ending(self.end), [0; 4096]);
         while !self.is_closed() {

@@ -17,7 +17,6 @@ pub enum Format {
 }
 
 impl Format {
-    /// Prints a report as `text`, or as JSON.
     pub fn print(self, text: &impl Display, report: &impl Serialize) -> anyhow::Result<()> {
         match self {
             Self::Text => out::print(format_args!("{text}")),

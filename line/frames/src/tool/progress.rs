@@ -6,7 +6,6 @@ use std::time::{Duration, Instant};
 
 use super::out;
 
-/// What takes less is not shown.
 const SHOWN_AFTER: Duration = Duration::from_secs(1);
 /// Intervals in a log and on a terminal.
 const REPEATED_AFTER: Duration = Duration::from_secs(4);
@@ -17,7 +16,6 @@ const COLUMNS: usize = 79;
 /// Progress in virtual time, or any other part of a whole. Dropped, it says how long it took, if that was more than 1 s.
 pub struct Progress {
     what: String,
-    /// The whole, virtual s.
     whole_s: f64,
     begun: Instant,
     is_terminal: bool,
@@ -60,7 +58,6 @@ impl Progress {
         *shown = Some(Instant::now());
     }
 
-    /// For something else to be printed.
     pub fn clear(&self) {
         if self.is_terminal {
             let _ = write!(stderr(), "\r\x1b[K");
