@@ -11,4 +11,4 @@ mod target;
 pub use client::{ANSWER_WITHIN, Client, is_silence};
 pub use inbox::{Counts, Heard, Inbox};
 pub use outbox::{Encoder, Outbox};
-pub use target::{Line, Target};
+pub use target::{Line, Target, port_names};

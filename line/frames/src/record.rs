@@ -137,7 +137,11 @@ impl Recording {
         }
     }
 
-    fn metadata(&self) -> Metadata {
+    /// Ends the file. Fails if it could not be written whole.
+    pub fn finish(mut self) -> anyhow::Result<()> {
+        if let Some(error) = self.error {
+            return Err(error);
+        }
         let began = UNIX_EPOCH + Duration::from_nanos(self.began_ns);
         let mut all = vec![
             ("tool", concat!("tenax ", env!("CARGO_PKG_VERSION")).to_owned()),
@@ -153,15 +157,7 @@ impl Recording {
             ]);
         }
         let metadata = all.into_iter().map(|(key, value)| (key.to_owned(), value)).collect();
-        Metadata { name: "tenax".to_owned(), metadata }
-    }
-
-    /// Ends the file. Fails if it could not be written whole.
-    pub fn finish(mut self) -> anyhow::Result<()> {
-        if let Some(error) = self.error {
-            return Err(error);
-        }
-        self.file.write_metadata(&self.metadata())?;
+        self.file.write_metadata(&Metadata { name: "tenax".to_owned(), metadata })?;
         self.file.finish()?;
         Ok(self.file.into_inner().flush()?)
     }

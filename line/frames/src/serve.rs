@@ -7,7 +7,6 @@
 mod hub;
 #[cfg(unix)]
 mod pty;
-mod tcp;
 
 use std::fmt::{self, Display};
 use std::path::PathBuf;
@@ -82,19 +81,20 @@ impl Server {
             #[cfg(not(unix))]
             anyhow::bail!("this system has no pseudo-terminals: serve on TCP, with --serve-tcp PORT");
         }
-        if let Some(port) = options.tcp {
-            let (place, door) = tcp::serve(port, &hub)?;
-            places.push(place);
+        let mut open = |port, hub: &Arc<Hub>| {
+            let (place, door) = hub.serve_tcp(port)?;
             doors.push(door);
+            anyhow::Ok(place)
+        };
+        if let Some(port) = options.tcp {
+            places.push(open(port, &hub)?);
         }
         let (act, acts) = sync_channel(DOWN_FRAMES);
         let mut truth = None;
         if let Some(port) = options.truth {
             let bench = serde_json::to_string(&options.keys)? + "\n";
             let hub = Hub::new(act, b'\n', Some(Frame::from(bench.as_bytes())));
-            let (place, door) = tcp::serve(port, &hub)?;
-            doors.push(door);
-            truth = Some((place, hub));
+            truth = Some((open(port, &hub)?, hub));
         }
         let teller = Teller(truth.as_ref().map(|(_, hub)| Arc::clone(hub)));
         Ok((

@@ -6,16 +6,10 @@ use serde::Serialize;
 use tenax_hal_shim::wire::{Down, FRAME_MAX, encode};
 
 /// One end of a line, which numbers what it sends from 0 on.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Encoder {
     next: u16,
-    buffer: [u8; FRAME_MAX],
-}
-
-impl Default for Encoder {
-    fn default() -> Self {
-        Self { next: 0, buffer: [0; FRAME_MAX] }
-    }
+    frame: Vec<u8>,
 }
 
 impl Encoder {
@@ -24,7 +18,8 @@ impl Encoder {
     pub fn frame(&mut self, message: &impl Serialize) -> (u16, &[u8]) {
         let number = self.next;
         self.next = number.wrapping_add(1);
-        (number, encode(number, message, &mut self.buffer).map_or(&[], |frame| frame))
+        self.frame.resize(FRAME_MAX, 0);
+        (number, encode(number, message, &mut self.frame).map_or(&[], |frame| frame))
     }
 }
 
@@ -39,6 +34,7 @@ impl<W: Write> Outbox<W> {
         Self { line, encoder: Encoder::default() }
     }
 
+    /// Sends one command; returns its number, which its answer names.
     pub fn send(&mut self, command: &Down) -> io::Result<u16> {
         let (number, frame) = self.encoder.frame(command);
         self.line.write_all(frame)?;

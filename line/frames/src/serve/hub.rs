@@ -1,12 +1,14 @@
 //! Clients of a line: each gets the frames that come up, and theirs go down. What a client has no room for is dropped and counted.
 
-use std::io::{Read, Write};
+use std::io::{self, Read, Write};
+use std::net::{Ipv4Addr, Shutdown, TcpListener, TcpStream};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::thread;
+use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
+use anyhow::Context;
 use tenax_hal_shim::wire::FRAME_MAX;
 
 use super::Tally;
@@ -16,6 +18,8 @@ pub type Frame = Arc<[u8]>;
 
 /// Frames on their way to a client: 2.5 s of a line at rest.
 const CLIENT_FRAMES: usize = 256;
+const LOOK_EVERY: Duration = Duration::from_millis(10);
+const TIMEOUT: Duration = Duration::from_millis(100);
 
 pub struct Hub {
     clients: Mutex<Clients>,
@@ -125,6 +129,41 @@ impl Hub {
                 thread::sleep(Duration::from_millis(1));
             }
         }
+    }
+
+    /// Serves on 127.0.0.1 until the hub is closed; the address for `tenax monitor --port`. No other machine may reach the line: it can
+    /// drive the motor.
+    pub fn serve_tcp(self: &Arc<Self>, port: u16) -> anyhow::Result<(String, JoinHandle<()>)> {
+        let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port)).with_context(|| {
+            format!("cannot serve on TCP port {port}: choose another, or 0 for any that is free")
+        })?;
+        listener.set_nonblocking(true)?;
+        let (place, hub) = (format!("tcp:{}", listener.local_addr()?), Arc::clone(self));
+        let door = thread::spawn(move || {
+            while !hub.is_closed() {
+                match listener.accept() {
+                    Ok((stream, _)) => drop(hub.attend(stream)),
+                    Err(_) => thread::sleep(LOOK_EVERY),
+                }
+            }
+        });
+        Ok((place, door))
+    }
+
+    fn attend(self: &Arc<Self>, mut stream: TcpStream) -> io::Result<()> {
+        stream.set_nonblocking(false)?;
+        stream.set_nodelay(true)?;
+        stream.set_read_timeout(Some(TIMEOUT))?;
+        stream.set_write_timeout(Some(TIMEOUT))?;
+        let (mut up, frames) = (stream.try_clone()?, self.join());
+        let (writer, reader) = (Arc::clone(self), Arc::clone(self));
+        thread::spawn(move || {
+            writer.write(&frames, &mut up, &AtomicBool::default());
+            // The reader's thread has the stream too, so it is not closed by itself.
+            let _closed = up.shutdown(Shutdown::Both);
+        });
+        thread::spawn(move || reader.read(&mut stream));
+        Ok(())
     }
 
     fn clients(&self) -> MutexGuard<'_, Clients> {

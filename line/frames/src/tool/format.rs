@@ -85,25 +85,13 @@ mod tests {
     #[test]
     fn a_report_is_a_line_a_key_and_a_row_an_entry() {
         let report = serde_json::json!({
-            "seed": 1, "angle_deg": 0.33333, "none": null, "of": [1, 2],
-            "first": { "right": 0.95, "missed": 3 },
-            "persons": [{ "person": 1, "ok": true }],
-            "stories": [{ "name": "a", "parts": [{ "n": 1 }] }],
+            "angle_deg": 0.33333, "of": [1, null], "first": { "right": 0.95 }, "stories": [{ "parts": [{ "n": 1 }] }],
         });
-        let expected = "\
-seed                        1
-angle_deg                   0.3333
-none                        -
-of                          1, 2
-first                       right 0.9500, missed 3
-persons
-  1                           person 1, ok true
-stories
-  1
-    name                        a
-    parts
-      1                           n 1
-";
-        assert_eq!(lines(&report, 0), expected);
+        let expected = [
+            "angle_deg                   0.3333\nof                          1, -\n",
+            "first                       right 0.9500\n",
+            "stories\n  1\n    parts\n      1                           n 1\n",
+        ];
+        assert_eq!(lines(&report, 0), expected.concat());
     }
 }
