@@ -68,7 +68,6 @@ pub fn open(place: &Place) -> anyhow::Result<Session> {
     Ok(session)
 }
 
-/// Nanoseconds since 1970.
 pub fn now_ns() -> u64 {
     let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
     u64::try_from(since.as_nanos()).unwrap_or(u64::MAX)
@@ -131,7 +130,6 @@ impl<'a> Graph<'a> {
     }
 }
 
-/// A topic that is published on.
 pub struct Publisher<'a> {
     publisher: zenoh::pubsub::Publisher<'a>,
     gid: [u8; GID],
