@@ -9,7 +9,7 @@ use rand::{RngExt, SeedableRng};
 use serialport::{SerialPort, TTYPort};
 use tenax_frames::link::{Client, Counts, Line};
 use tenax_hal_shim::wire::{Counters, FRAME_MAX, Up, encode};
-use tenax_line::monitor;
+use tenax_line::cli::monitor;
 
 use crate::serving::{command, tenax};
 

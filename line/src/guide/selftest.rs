@@ -160,6 +160,10 @@ impl Selftest {
         })
     }
 
+    fn is_silent(&self) -> bool {
+        self.heard.elapsed() > SILENCE
+    }
+
     pub fn is_over(&self) -> bool {
         self.step == Step::Over
     }
@@ -187,15 +191,15 @@ impl Selftest {
         }
     }
 
-    /// Takes a message, or notes that none came. A board that sends no readings or starts anew fails the test.
-    pub fn take(&mut self, message: Option<&Up>) {
+    /// Takes a message. A board that sends no readings or starts anew fails the test.
+    pub fn take(&mut self, message: &Up) {
         match message {
             _ if self.is_over() || self.failed.is_some() => {}
-            Some(Up::Senses(senses)) => self.hear(senses),
-            Some(Up::Hello { .. }) if self.began.is_some() => {
+            Up::Senses(senses) => self.hear(senses),
+            Up::Hello { .. } if self.began.is_some() => {
                 self.fail("the board was switched on anew: start again");
             }
-            _ if self.heard.elapsed() > SILENCE => self.fail("the board sends no readings"),
+            _ if self.is_silent() => self.fail("the board sends no readings"),
             _ => {}
         }
     }
@@ -444,7 +448,10 @@ pub fn run(client: &mut Client, words: &[String], limit_s: u32, say: Say<'_>) ->
             return Ok(test.passes());
         }
         client.keep_streaming(false)?;
-        let message = client.next_message().context("the line ended")?;
-        test.take(message.as_ref().map(|heard| &heard.received.message));
+        if let Some(heard) = client.next_message().context("the line ended")? {
+            test.take(&heard.received.message);
+        } else if test.is_silent() {
+            bail!("the board sends nothing");
+        }
     }
 }

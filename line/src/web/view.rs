@@ -9,7 +9,7 @@ use tenax_frames::link::{Counts, Heard};
 use tenax_frames::play;
 use tenax_frames::settings;
 use tenax_frames::truth;
-use tenax_frames::words::{answer_words, seconds, why, words};
+use tenax_frames::words::{answer_words, in_words, seconds, why, words};
 use tenax_hal_shim::channel::{CHANNELS, mv_from_sample};
 use tenax_hal_shim::detector::{DetectorId, DetectorSet};
 use tenax_hal_shim::wire::{About, Answer, BadFrame, EventKind, Setting, Slow, TickRecord, Up};
@@ -77,7 +77,6 @@ impl View {
     }
 
     pub fn take(&mut self, news: News) {
-        self.test(&news);
         match news {
             News::Open => {
                 self.tell(json!({ "gone": null }));
@@ -86,6 +85,10 @@ impl View {
             News::Gone(why) => {
                 if self.state.get("gone").is_none_or(Value::is_null) {
                     self.say(&format!("the line is gone: {why}; it is opened again when it is back"));
+                }
+                if let Some(test) = &mut self.selftest {
+                    test.fail(&format!("the line is gone: {why}"));
+                    self.tell_selftest();
                 }
                 self.tell(json!({ "gone": why }));
             }
@@ -120,6 +123,13 @@ impl View {
             self.say(&format!("{missed} messages missed"));
         }
         let message = &received.message;
+        if let Some(test) = &mut self.selftest {
+            let had_failed = test.failed.is_some();
+            test.take(message);
+            if matches!(message, Up::Senses(_)) || test.failed.is_some() != had_failed {
+                self.tell_selftest();
+            }
+        }
         match message {
             Up::Slow(slow) => self.slow(slow),
             Up::Senses(senses) => {
@@ -179,13 +189,7 @@ impl View {
             let ever =
                 |set: fn(&TickRecord) -> DetectorSet| slow.ticks.iter().any(|tick| set(tick).contains(id));
             let evidence = slow.evidence.iter().find(|(own, _)| *own == id).map(|(_, evidence)| evidence);
-            json!([
-                id.name(),
-                ever(|tick| tick.said),
-                ever(|tick| tick.believed),
-                ever(|tick| tick.acted),
-                evidence
-            ])
+            (id.name(), ever(|tick| tick.said), ever(|tick| tick.believed), ever(|tick| tick.acted), evidence)
         });
         self.tell(json!({
             "t_s": seconds(slow.frame),
@@ -209,17 +213,17 @@ impl View {
     }
 
     fn fault(&mut self, fault: &Fault) {
-        let name = |channel: u8| CHANNELS.get(usize::from(channel)).map_or("channel", |channel| channel.name);
-        match *fault {
-            Fault::SensorLost { channel, reason } => {
-                self.faults.insert(name(channel).to_owned(), format!("{}: {reason:?}", name(channel)));
-            }
-            Fault::SensorBack { channel } => _ = self.faults.remove(name(channel)),
-            Fault::CapabilityLost(capability) => {
-                self.faults.insert(format!("{capability:?}"), format!("no {capability:?}"));
-            }
-            Fault::CapabilityBack(capability) => _ = self.faults.remove(&format!("{capability:?}")),
-            _ => {}
+        let (of, is_lost) = match *fault {
+            Fault::SensorLost { channel, .. } => (format!("channel {channel}"), true),
+            Fault::SensorBack { channel } => (format!("channel {channel}"), false),
+            Fault::CapabilityLost(own) => (format!("{own:?}"), true),
+            Fault::CapabilityBack(own) => (format!("{own:?}"), false),
+            _ => return,
+        };
+        if is_lost {
+            self.faults.insert(of, in_words(fault));
+        } else {
+            self.faults.remove(&of);
         }
         self.tell(json!({ "faults": self.faults.values().collect::<Vec<_>>() }));
     }
@@ -262,23 +266,6 @@ impl View {
         }
         self.tell_selftest();
         Ok(())
-    }
-
-    fn test(&mut self, news: &News) {
-        let Some(test) = &mut self.selftest else { return };
-        let message = match news {
-            News::Frame(Ok(heard), _) => Some(&heard.received.message),
-            News::Played(play::Told::Message(heard)) => Some(&heard.received.message),
-            _ => None,
-        };
-        let had_failed = test.failed.is_some();
-        match news {
-            News::Gone(why) => test.fail(&format!("the line is gone: {why}")),
-            _ => test.take(message),
-        }
-        if matches!(message, Some(Up::Senses(_))) || test.failed.is_some() != had_failed {
-            self.tell_selftest();
-        }
     }
 
     /// Tells the pages what the self-test asks, reads and has found.
