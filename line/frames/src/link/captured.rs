@@ -26,15 +26,13 @@ pub fn line_of(path: &Path) -> anyhow::Result<Vec<u8>> {
             Err(_) => {}
         }
     }
-    if let Some(version) = other {
-        bail!(
-            "{name} is of wire version {version}, and this tool reads {VERSION}: use the tool that recorded it"
-        );
+    match other {
+        Some(version) => bail!("{name} is of wire version {version}, and this tool reads {VERSION}"),
+        None => bail!(
+            "{name} is no board's line: none of its {} bytes belongs to a message. `tenax record` writes one",
+            line.len()
+        ),
     }
-    bail!(
-        "{name} is no board's line: none of its {} bytes belongs to a message. `tenax record` writes one",
-        line.len()
-    )
 }
 
 fn recorded(path: &Path, bytes: &[u8]) -> anyhow::Result<Vec<u8>> {
