@@ -23,7 +23,6 @@ fn probe(duration_s: f64, presses: &[(f64, f64, f64)], sweeps: &[(f64, f64)]) ->
     text
 }
 
-/// The number that follows these words.
 fn number(text: &str, after: &str) -> f64 {
     let rest = text.split(after).nth(1).unwrap_or_else(|| panic!("no '{after}': {text}"));
     rest.split_whitespace().next().unwrap().parse().unwrap()

@@ -12,7 +12,6 @@ use crate::serving::{BENCH, Serving, command};
 
 const WITHIN: Duration = Duration::from_secs(60);
 
-/// `tenax monitor` and the address of its page.
 pub struct Web {
     monitor: Child,
     pub url: String,
@@ -29,7 +28,6 @@ impl Web {
         Self { monitor, url }
     }
 
-    /// Of a served board and its scene's true state.
     pub fn watching(served: &Serving, more: &[&str]) -> Self {
         Self::start(&[&["--port", &served.place, "--truth", &served.truth], more].concat())
     }
@@ -38,7 +36,6 @@ impl Web {
         self.url.trim_start_matches("http://").trim_end_matches('/')
     }
 
-    /// Sends a request with these header lines.
     fn request(&self, method: &str, path: &str, headers: &str) -> TcpStream {
         let mut stream = TcpStream::connect(self.place()).unwrap();
         write!(stream, "{method} {path} HTTP/1.1\r\n{headers}Connection: close\r\n\r\n").unwrap();
@@ -50,7 +47,6 @@ impl Web {
         self.request(method, path, &format!("Host: {place}\r\nOrigin: http://{place}\r\n"))
     }
 
-    /// Status and text of the answer.
     pub fn post(&self, path: &str) -> (u16, String) {
         answer(self.ask("POST", path))
     }
@@ -66,7 +62,6 @@ impl Web {
         })
     }
 
-    /// The first event of which this is so.
     pub fn until(&self, what: &str, mut is_so: impl FnMut(&Value) -> bool) -> Value {
         let began = Instant::now();
         let is_found = |event: &Value| {
@@ -76,7 +71,6 @@ impl Web {
         self.events().find(is_found).expect("the page stays open")
     }
 
-    /// Starts a self-test as soon as the board has said its settings.
     fn selftest(&self, channels: &str) {
         let (path, began) = (format!("/selftest/start/{channels}"), Instant::now());
         while self.post(&path).0 != 202 {

@@ -10,7 +10,6 @@ fn package() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().join("python")
 }
 
-/// Python with the package.
 fn python() -> Command {
     let mut python = Command::new(std::env::var_os("TENAX_PYTHON").unwrap_or_else(|| "python3".into()));
     python.env("PYTHONPATH", package()).env("PYTHONDONTWRITEBYTECODE", "1");
@@ -50,7 +49,6 @@ fn it_reads_sets_and_streams_a_served_board() {
     served.end();
 }
 
-/// The example on a served board and on a captured line.
 #[test]
 #[cfg_attr(not(python), ignore = "no python3 here")]
 fn the_example_runs_live_and_offline() {

@@ -21,7 +21,6 @@ pub fn line(scene: &str, streams_at_start: bool) -> Vec<u8> {
     Board::Host.run(plant, &mut |_| {}).unwrap().0.line
 }
 
-/// Records a line into a new file.
 pub fn record(path: &Path, line: &[u8]) {
     let mut recording = Recording::create(path).unwrap();
     recording.line(line);

@@ -45,7 +45,6 @@ impl Plant for Bench {
     }
 }
 
-/// Runs the test on the board's readings.
 struct Tester {
     inbox: Inbox,
     test: Selftest,
@@ -64,7 +63,6 @@ impl Recorder for Tester {
     }
 }
 
-/// The bench with these faults, tested.
 fn tested(faults: &str, seed: u64) -> Selftest {
     let mut bench = BENCH.replace("= 3600", "= 80");
     // A muscle's wrong wire closes the hand: only then does it matter that the hand is to be empty.
@@ -81,7 +79,6 @@ fn tested(faults: &str, seed: u64) -> Selftest {
     tester.test
 }
 
-/// A fault of a channel in a scene file.
 pub fn fault(channel: &str, kind: &str, with: &str) -> String {
     let with = if with.is_empty() { String::new() } else { format!("with = \"{with}\"\n") };
     format!("\n[[fault]]\nat_s = 0\nchannel = \"{channel}\"\nkind = \"{kind}\"\n{with}reason = \"a test\"\n")

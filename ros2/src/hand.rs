@@ -34,7 +34,6 @@ fn newtons(mn: i32) -> f64 {
     f64::from(mn) / 1e3
 }
 
-/// The grip as a joint's effort.
 pub fn joint_state(header: Header, slow: &Slow) -> JointState {
     let effort = slow.forces.iter().map(|forces| newtons(forces.load_mn)).collect();
     let name = vec![format!("{}_grip", header.frame_id)];
@@ -94,7 +93,6 @@ pub struct Health {
     pub command: String,
     pub about: Option<About>,
     pub counters: Option<Counters>,
-    /// Messages missing on the line, and frames that were none.
     pub missed: u64,
     pub bad_frames: u64,
 }

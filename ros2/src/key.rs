@@ -4,14 +4,11 @@ use xxhash_rust::xxh3::xxh3_128;
 
 use crate::message::Message;
 
-/// Bytes of an entity's id.
 pub const GID: usize = 16;
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Node {
-    /// ROS_DOMAIN_ID.
     pub domain: u32,
-    /// The session's zenoh id, as zenoh writes it.
     pub session: String,
     pub id: u32,
     pub name: String,
@@ -29,7 +26,6 @@ pub fn topic<M: Message>(domain: u32, name: &str) -> String {
 }
 
 impl Node {
-    /// The token that it lives.
     pub fn token(&self) -> String {
         let Self { domain, session, id, name } = self;
         format!("@ros2_lv/{domain}/{session}/{id}/{id}/NN/%/%/{name}")

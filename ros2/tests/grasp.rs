@@ -17,7 +17,6 @@ fn drives(grasp: &mut Grasp, load_mn: i32) -> usize {
     (0..10_000).take_while(|_| matches!(grasp.step(Some(load_mn)), Step::Send(Down::Drive { .. }))).count()
 }
 
-/// No effort passes the ceiling.
 #[test]
 fn it_closes_to_the_force_and_drives_no_further() {
     for (effort, per_mille, mn) in [

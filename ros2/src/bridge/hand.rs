@@ -14,7 +14,6 @@ use zenoh::Session;
 use super::network::{Graph, Publisher, now_ns};
 
 const ANSWER_WITHIN: Duration = Duration::from_millis(500);
-/// Pause before a line is opened again.
 const AGAIN_AFTER: Duration = Duration::from_millis(500);
 const DIAGNOSE_EVERY: Duration = Duration::from_secs(1);
 const SESSIONS_MAX: u32 = 3;
@@ -82,7 +81,6 @@ pub fn bridge(session: &Session, domain: u32, id: u32, hand: &Hand, stop: &Atomi
     Ok(())
 }
 
-/// A line while it is open.
 struct Attendant<'a, 'b> {
     client: Client,
     name: &'a str,

@@ -11,7 +11,6 @@ use zenoh::pubsub::Subscriber;
 use zenoh::qos::CongestionControl;
 use zenoh::{Config, Session, Wait};
 
-/// Messages that a subscription keeps.
 const DEPTH: u32 = 10;
 const ROUTER_WITHIN: Duration = Duration::from_secs(3);
 const LOOK_EVERY: Duration = Duration::from_millis(20);
@@ -73,7 +72,6 @@ pub fn now_ns() -> u64 {
     u64::try_from(since.as_nanos()).unwrap_or(u64::MAX)
 }
 
-/// A node of a session, and the tokens that it lives.
 pub struct Graph<'a> {
     session: &'a Session,
     node: Node,
@@ -137,7 +135,6 @@ pub struct Publisher<'a> {
 }
 
 impl Publisher<'_> {
-    /// Publishes a message. Fails if the session is closed.
     pub fn publish(&mut self, message: &impl Message) -> anyhow::Result<()> {
         let payload = cdr::payload(message).context("no CDR")?;
         self.sequence += 1;

@@ -81,12 +81,10 @@ fn said_of_command(message: &DiagnosticArray) -> &str {
     &message.status[0].values[0].value
 }
 
-/// The grip force, N.
 fn force(message: &JointState) -> f64 {
     message.effort.first().copied().unwrap_or_default()
 }
 
-/// The grip force that comes next.
 fn newest(hears: &Receiver<(JointState, Attachment)>) -> f64 {
     while hears.try_recv().is_ok() {}
     force(&hears.recv_timeout(WITHIN).unwrap().0)
