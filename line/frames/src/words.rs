@@ -217,7 +217,8 @@ fn slow_words(slow: &Slow) -> String {
         Some(MotorDrive::Open(duty)) => text += &format!(" opening {}", duty.as_per_mille()),
         Some(MotorDrive::Coast) | None => {}
     }
-    let sets: [(&str, fn(&TickRecord) -> DetectorSet); 3] =
+    type Set = fn(&TickRecord) -> DetectorSet;
+    let sets: [(&str, Set); 3] =
         [("said", |tick| tick.said), ("believed", |tick| tick.believed), ("acted", |tick| tick.acted)];
     for (word, set) in sets {
         let ever = slow.ticks.iter().fold(DetectorSet::NONE, |ever, tick| ever.or(set(tick)));
