@@ -5,7 +5,7 @@ pub mod front;
 pub mod table;
 
 use tenax_sim::plot::sheet::Sheet;
-pub use tenax_sim::plot::sheet::draw::svg;
+use tenax_sim::plot::sheet::draw::svg;
 
 /// A chart and the numbers in it.
 #[derive(Clone, Debug)]

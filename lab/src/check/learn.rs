@@ -1,7 +1,5 @@
 //! A fingertip that teaches itself slip: the bars of `tenax learn`, on the host's logic.
 
-use tenax_sim::session::Board;
-
 use super::{Bar, Goal, Verdict};
 use crate::learn::report::{Score, of_judges};
 use crate::learn::{self, LESSONS, Options};
@@ -16,14 +14,14 @@ const MINUTES: u64 = 40;
 /// Fails if a scene cannot be made.
 pub fn bars() -> anyhow::Result<Vec<Bar>> {
     let options = Options { minutes: MINUTES, ..Options::default() };
-    let outcome = learn::run(&options, &Board::Host, &|_, _| ())?;
+    let outcome = learn::run(&options, &|_, _| ())?;
     let (score, lead) = (&outcome.score, outcome.score.first.lead());
     let (slip, holding) = (&score.slip, &outcome.holding);
     let in_3_h = |alarms| 3.0 * holding.per_hour(alarms);
     let [touch_s, vision_s, bound_s] = of_judges(&outcome.lifts, |run| run.secured_s);
     let [touch_mm, vision_mm, bound_mm] = of_judges(&outcome.pours, |run| run.distance_mm);
     let worst_s = outcome.worst_lead_s().unwrap_or(f64::NAN);
-    let sum = |of: fn(&Score) -> u64| outcome.others.iter().map(|other| of(&other.score)).sum::<u64>();
+    let sum = |of: fn(&Score) -> u64| outcome.others.iter().map(of).sum::<u64>();
     let (missed, trials) = (sum(|score| score.first.missed), sum(|score| score.trials));
     let wrong = sum(|score| score.direction_wrong);
     let goal = |what, goal, held| Goal { what, goal, held };

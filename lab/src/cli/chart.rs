@@ -17,7 +17,7 @@ pub struct Args {
     /// Subject of the charts
     #[arg(value_enum)]
     subject: Subject,
-    /// Folder for SVG and CSV
+    /// front and emg only: folder for SVG and CSV
     #[arg(long, value_name = "DIR", default_value = "out")]
     out: PathBuf,
     /// table only: how to print the figures
@@ -32,12 +32,11 @@ enum Subject {
     Front,
     /// Accuracy and latency of intent recognition on recorded people against false motions: the hand and plain control
     Emg,
-    /// Slips caught, false alarms and processor time of each detector, pairs, the hand and plain rivals
+    /// Slips caught, false alarms and processor time of each detector, pairs, the hand and plain rivals, as a report
     Table,
 }
 
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
-    let folder = folder::made(&args.out)?;
     let chart: Chart = match args.subject {
         Subject::Front => with_bar("front", |progress| front::front(progress))?,
         Subject::Emg => emg::chart(&workspace::root()?.join(RECORDINGS))?,
@@ -45,10 +44,10 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
             let costs = table::costs::Costs::measured()?;
             let table = with_bar("table", |progress| table::table(&table::PLANS, &costs, progress))?;
             out::unless_closed(args.report.show(&table))?;
-            table.chart()?
+            return Ok(ExitCode::SUCCESS);
         }
     };
-    let path = folder.join(chart.name);
+    let path = folder::made(&args.out)?.join(chart.name);
     super::write(&path.with_extension("svg"), chart.svg.as_bytes())?;
     super::write(&path.with_extension("csv"), chart.csv.as_bytes())?;
     Ok(ExitCode::SUCCESS)

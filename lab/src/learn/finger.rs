@@ -88,10 +88,6 @@ impl Finger {
         }
     }
 
-    pub fn ratio(&self) -> f64 {
-        self.mu_d / self.mu_s
-    }
-
     /// The scene of this name with this finger and its object, edited. Friction and mass differ by up to 3 %, the first grip by 5 %, from
     /// one seed to the next. Fails if the scene does not become one with these numbers.
     pub fn scene(
@@ -145,12 +141,6 @@ impl Finger {
     /// The object's mass, kg.
     pub const fn mass_kg(&self) -> f64 {
         self.mass_kg
-    }
-
-    /// Time of closing at 36 mm/s until the fingers press the object with so many times its need, s: they have 1 mm
-    /// each to go, and press 0.3 N for each mm after that.
-    pub fn closing_s(&self, times: f64) -> f64 {
-        (2.0 + times * self.force * NEEDED_N / 0.3) / 36.0
     }
 
     pub const fn force(&self) -> f64 {

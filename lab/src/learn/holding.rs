@@ -29,8 +29,6 @@ pub struct Holding {
     pub any: False,
     pub slip: False,
     pub warning: False,
-    /// Slips that were true: none is meant here.
-    pub slips: u32,
 }
 
 /// False alarms of one kind of word.
@@ -80,28 +78,21 @@ pub fn hold(
             any: a.any + b.any,
             slip: a.slip + b.slip,
             warning: a.warning + b.warning,
-            slips: a.slips + b.slips,
         })
     })
 }
 
 fn one(finger: &Finger, learned: &Bench, seed: u64) -> anyhow::Result<Holding> {
     let scene = minute(finger, seed, true)?;
-    let mut bench = learned.clone();
-    let mut trial = Trial::default();
     let world = World::seeded(&scene, Seeds { making: finger.making, noise: seed });
-    let world = bench
-        .run(f64::INFINITY, world, Judge::Touch, &mut |n, slow, bench| trial.hear(n, slow, bench.said()));
-    trial.truth = world.truth().clone();
+    let trial = learned.clone().run(world, Judge::Touch);
     let held = Stretch { from_s: FROM_S, to_s: scene.duration_s(), doing: Doing::Hold };
     let false_of = |word| False::of(word, &trial, held);
-    let slips = &trial.truth.slips;
     Ok(Holding {
         hours: (scene.duration_s() - FROM_S) / 3_600.0,
         any: false_of(Word::Any),
         slip: false_of(Word::Slip),
         warning: false_of(Word::Warning),
-        slips: slips.iter().filter(|slip| slip.macro_onset_s > FROM_S).count() as u32,
     })
 }
 

@@ -13,7 +13,7 @@ use tenax_sim::session::{self, Board};
 const FEW: Options = Options { seed: 11, trials: 4, minutes: 2, lifts: 3, fingertips: 1 };
 
 fn outcome() -> Outcome {
-    learn::run(&FEW, &Board::Host, &|_, _| ()).unwrap()
+    learn::run(&FEW, &|_, _| ()).unwrap()
 }
 
 #[test]
@@ -59,7 +59,7 @@ fn before_learning_it_says_nothing_and_afterwards_it_sees_micro_slip() {
     };
     assert_eq!(
         keys(&json),
-        "trials vision_first_s_mean micro_onset_s_mean macro_onset_s_mean first slip warnings_false_per_hour holding_hours safe lifts \
+        "trials vision_first_s_mean micro_onset_s_mean macro_onset_s_mean first slip warnings_false_per_hour holding_hours lifts \
          pours direction_wrong fingertips"
     );
     // The camera's delay is all that is between the two.
@@ -70,7 +70,7 @@ fn before_learning_it_says_nothing_and_afterwards_it_sees_micro_slip() {
 #[test]
 fn the_same_seed_gives_the_same_learning() {
     let few = Options { trials: 1, minutes: 0, lifts: 0, fingertips: 0, ..FEW };
-    let run = || learn::run(&few, &Board::Host, &|_, _| ()).unwrap();
+    let run = || learn::run(&few, &|_, _| ()).unwrap();
     let (one, other) = (run(), run());
     assert_eq!(one.trials[0].outputs, other.trials[0].outputs);
     assert!(
@@ -84,7 +84,7 @@ fn the_same_seed_gives_the_same_learning() {
 fn run_and_learn_score_the_same_scene_alike() {
     const SEED: u64 = 11;
     let finger = Finger::plain(SEED);
-    let (scene, _) = Setup::scene(&finger, SEED, true, &[]).unwrap();
+    let (scene, _) = Setup::scene(&finger, SEED, true).unwrap();
     let ran = session::scene(&scene, SEED, &Board::Host, &mut |_| ()).unwrap();
     let by_run = ran.report.detectors.of_id(DetectorId::Hebbian).events.unwrap();
     let by_learn = Bench::default().trial(Setup::new(&finger, SEED, true).unwrap()).card(Word::Any);
