@@ -5,7 +5,7 @@ pub mod heard;
 pub mod rivals;
 pub mod scored;
 
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use rayon::prelude::*;
 use serde::Serialize;
@@ -15,7 +15,7 @@ use tenax_sim::jobs::Jobs;
 use super::Progress;
 use costs::Costs;
 use heard::{Heard, Judge, Kind, Plan};
-use rivals::{Rival, Row, learn};
+use rivals::{Row, learn};
 use scored::{Between, Scored};
 
 /// One in so many steps without slip is learned from.
@@ -76,56 +76,67 @@ pub struct Table {
     pub rows: Vec<Line>,
 }
 
-/// Hears every fingertip of a plan with these judges. `steps` gets every step of the array. Fails if a scene cannot be made.
+/// Hears every fingertip of a plan with these judges. Fails if a scene cannot be made.
 fn hear(
     plan: &Plan,
     taught: bool,
     judges: &(dyn Fn() -> Vec<Judge> + Sync),
-    steps: &(dyn Fn(&Features, bool) + Sync),
     jobs: &Jobs,
 ) -> anyhow::Result<Vec<Heard>> {
     let all = (0..plan.count()).into_par_iter().map(|n| {
         let fingertip = plan.fingertip(n, taught)?;
         let mut job = jobs.begin();
-        fingertip
-            .record(plan, judges, &mut |features, slips| steps(features, slips), &mut |part| job.at(part))
+        fingertip.record(plan, judges, &mut |part| job.at(part))
     });
     Ok(all.collect::<anyhow::Result<Vec<_>>>()?.into_iter().flatten().collect())
+}
+
+type Steps = Arc<Mutex<Vec<(Features, bool)>>>;
+
+/// Keeps every step of the array in which the object slides, and some of the others.
+fn keeps(steps: Steps) -> Judge {
+    Box::new(move |felt| {
+        if let Some(features) = felt.features {
+            // By content, not by order: fingertips are heard side by side.
+            let mark =
+                features.iter().fold(0_u32, |mark, &own| mark.wrapping_mul(31).wrapping_add(own as u32));
+            if felt.slides || mark.is_multiple_of(THINNED) {
+                steps.lock().unwrap_or_else(PoisonError::into_inner).push((*features, felt.slides));
+            }
+        }
+        false
+    })
 }
 
 /// Learns, chooses, hears and scores. Fails if a scene cannot be made.
 pub fn table(plans: &[Plan; 3], costs: &Costs, progress: Progress) -> anyhow::Result<Table> {
     let [learned, chosen, scored] = plans;
     let jobs = Jobs::new(plans.iter().map(Plan::count).sum(), progress);
-    let steps: Mutex<Vec<(Features, bool)>> = Mutex::default();
-    let keep = |features: &Features, slips: bool| {
-        // By content, not by order: fingertips are heard side by side.
-        let mark = features.iter().fold(0_u32, |mark, &own| mark.wrapping_mul(31).wrapping_add(own as u32));
-        if slips || mark.is_multiple_of(THINNED) {
-            steps.lock().unwrap_or_else(PoisonError::into_inner).push((*features, slips));
-        }
-    };
-    hear(learned, false, &Vec::new, &keep, &jobs)?;
-    let mut steps = steps.into_inner().unwrap_or_else(PoisonError::into_inner);
+    let steps = Steps::default();
+    hear(learned, false, &|| vec![keeps(Arc::clone(&steps))], &jobs)?;
+    let mut steps = std::mem::take(&mut *steps.lock().unwrap_or_else(PoisonError::into_inner));
     // Sums of floats depend on the order.
     steps.sort_unstable();
     let rivals = rivals::rivals(learn(&steps, FEATURES), learn(&steps, rivals::OF_PAPER));
-    drop(steps);
-    let tried = || rivals.iter().flat_map(|own| own.grid.iter().map(|&at| own.judge(at))).collect();
-    let heard = hear(chosen, false, &tried, &|_, _| (), &jobs)?;
-    let mut from = 0;
-    let mut rows = rivals::rows();
-    for rival in &rivals {
-        rows.extend(CAPS.iter().map(|&cap| rival.row(choose(rival, &heard, from, cap), cap)));
+    let tried =
+        || rivals.iter().flat_map(|own| own.grid.iter().flat_map(|&at| own.judges(Some(at)))).collect();
+    let heard = hear(chosen, false, &tried, &jobs)?;
+    let (mut from, mut rows) = (0, rivals::rows());
+    for rival in rivals {
+        rows.extend(CAPS.map(|cap| Row {
+            name: format!("{}, {cap} false/h", rival.name),
+            threshold: choose(&rival.grid, &heard, from, cap),
+            ..rival.clone()
+        }));
         from += rival.grid.len();
     }
-    let fresh = || rows.iter().flat_map(|row| (row.make)()).collect();
-    let heard = hear(scored, true, &fresh, &|_, _| (), &jobs)?;
+    let fresh = || rows.iter().flat_map(|row| row.judges(row.threshold)).collect();
+    let heard = hear(scored, true, &fresh, &jobs)?;
     Ok(Table::of(&rows, &heard, scored, costs))
 }
 
 /// The threshold that catches the most slips of a millimetre within the cap; if there is none, the one with the fewest false alarms.
-fn choose(rival: &Rival, heard: &[Heard], from: usize, cap: f64) -> i32 {
+fn choose(grid: &[i32], heard: &[Heard], from: usize, cap: f64) -> Option<i32> {
     let rank = |(n, at): (usize, &i32)| {
         let scored = Scored::of(heard, from + n..from + n + 1);
         let value = |own: Option<Between>| own.map_or(0.0, |[value, ..]| value);
@@ -133,10 +144,9 @@ fn choose(rival: &Rival, heard: &[Heard], from: usize, cap: f64) -> i32 {
         let worst = worst[0].max(worst[1]);
         (if worst <= cap { (1, value(scored.recall())) } else { (0, -worst) }, *at)
     };
-    let ranks = rival.grid.iter().enumerate().map(rank);
+    let ranks = grid.iter().enumerate().map(rank);
     // The first of equals.
-    let best = ranks.reduce(|best, next| if next.0 > best.0 { next } else { best });
-    best.map_or(i32::MAX, |(_, at)| at)
+    ranks.reduce(|best, next| if next.0 > best.0 { next } else { best }).map(|(_, at)| at)
 }
 
 impl Table {
@@ -152,7 +162,7 @@ impl Table {
         );
         let mut from = 0;
         let line = |row: &Row| {
-            let judges = (row.make)().len();
+            let judges = row.judges(None).len();
             from += judges;
             Line::new(row, &Scored::of(heard, from - judges..from), costs)
         };

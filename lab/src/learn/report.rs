@@ -95,26 +95,6 @@ impl Score {
     }
 }
 
-/// One kind of word of a group of fingertips: leads over the camera, s, means.
-#[derive(Clone, Copy, Debug, Default, Serialize)]
-pub struct Lead {
-    pub lead_s: f64,
-    pub lead_s_no_delay: f64,
-    pub missed: u64,
-}
-
-impl Lead {
-    fn of<'a>(words: impl Iterator<Item = &'a Words>) -> Self {
-        let (mut leads, mut no_delay, mut missed) = (Vec::new(), Vec::new(), 0);
-        for own in words {
-            leads.extend(&own.lead_s);
-            no_delay.extend(&own.lead_no_delay_s);
-            missed += own.missed;
-        }
-        Self { lead_s: Spread::of(&leads).mean, lead_s_no_delay: Spread::of(&no_delay).mean, missed }
-    }
-}
-
 /// One kind of word of the finger.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Said {
@@ -127,7 +107,8 @@ pub struct Said {
     pub missed: u64,
     /// False alarms an hour of holding.
     pub false_per_hour: f64,
-    pub equal_weights: Lead,
+    /// Lead over the camera with equal weights, s, mean.
+    pub equal_weights_lead_s: f64,
 }
 
 impl Said {
@@ -138,7 +119,7 @@ impl Said {
             lead_s_no_delay: Spread::of(&words.lead_no_delay_s),
             missed: words.missed,
             false_per_hour,
-            equal_weights: Lead::of(std::iter::once(equal)),
+            equal_weights_lead_s: equal.lead().mean,
         }
     }
 }
@@ -159,8 +140,8 @@ pub struct Report {
     pub warnings_false_per_hour: f64,
     pub holding_hours: f64,
     /// The reflex triggered by each judge, in lifts and in pours.
-    pub lifts: Vec<Told>,
-    pub pours: Vec<Told>,
+    pub lifts: [Told; 3],
+    pub pours: [Told; 3],
     /// Slips, up or down, with the wrong direction of o2.
     pub direction_wrong: u64,
     pub fingertips: Fingertips,
@@ -178,17 +159,19 @@ pub struct Told {
     pub grip_n: f64,
 }
 
-fn told(runs: &[Three]) -> Vec<Told> {
-    let secured_s = of_judges(runs, |run| run.secured_s);
-    let distance_mm = of_judges(runs, |run| run.distance_mm);
-    let grip_n = of_judges(runs, |run| run.grip_n);
-    let of = |(n, judge): (usize, &'static str)| Told {
-        judge,
-        secured_s: secured_s[n],
-        distance_mm: distance_mm[n],
-        grip_n: grip_n[n],
-    };
-    ["touch", "vision", "bound"].into_iter().enumerate().map(of).collect()
+/// In the order of [`JUDGES`](super::reflex::JUDGES).
+pub fn told(runs: &[Three]) -> [Told; 3] {
+    std::array::from_fn(|n| {
+        let mean = |of: fn(&Reflexed) -> f64| {
+            Spread::of(&runs.iter().map(|three| of(&three[n])).collect::<Vec<_>>()).mean
+        };
+        Told {
+            judge: ["touch", "vision", "bound"][n],
+            secured_s: mean(|run| run.secured_s),
+            distance_mm: mean(|run| run.distance_mm),
+            grip_n: mean(|run| run.grip_n),
+        }
+    })
 }
 
 /// Random fingertips.
@@ -198,8 +181,8 @@ pub struct Fingertips {
     pub trials: u64,
     /// The mean lead of the worst of them, s. Null if one missed a slip or reported a direction wrongly, or there are none.
     pub worst_lead_s: Option<f64>,
-    pub first: Lead,
-    pub slip: Lead,
+    /// Trials whose slip was not reported.
+    pub missed: u64,
 }
 
 impl Report {
@@ -210,10 +193,10 @@ impl Report {
             vision_first_s_mean: Spread::of(&score.vision_s).mean,
             micro_onset_s_mean: Spread::of(&score.micro_s).mean,
             macro_onset_s_mean: Spread::of(&score.macro_s).mean,
-            first: Said::of(&score.first, &equal.first, holding.per_hour(holding.any)),
-            slip: Said::of(&score.slip, &equal.slip, holding.per_hour(holding.slip)),
-            warnings_false_per_hour: holding.per_hour(holding.warning),
-            holding_hours: holding.hours,
+            first: Said::of(&score.first, &equal.first, holding.any.per_hour),
+            slip: Said::of(&score.slip, &equal.slip, holding.slip.per_hour),
+            warnings_false_per_hour: holding.warning.per_hour,
+            holding_hours: holding.slip.hours,
             lifts: told(&outcome.lifts),
             pours: told(&outcome.pours),
             direction_wrong: score.direction_wrong,
@@ -221,8 +204,7 @@ impl Report {
                 count: others.len(),
                 trials: others.iter().map(|other| other.trials).sum(),
                 worst_lead_s: outcome.others_work().then(|| outcome.worst_lead_s()).flatten(),
-                first: Lead::of(others.iter().map(|other| &other.first)),
-                slip: Lead::of(others.iter().map(|other| &other.slip)),
+                missed: others.iter().map(|other| other.first.missed).sum(),
             },
         }
     }
@@ -239,10 +221,4 @@ impl Outcome {
         let seen = self.others.iter().filter(|other| !other.first.lead_s.is_empty());
         seen.map(|other| other.first.lead().mean).min_by(f64::total_cmp)
     }
-}
-
-/// The mean of a figure over each judge's runs, in the order of [`JUDGES`](super::reflex::JUDGES).
-pub fn of_judges(runs: &[Three], figure: impl Fn(&Reflexed) -> f64) -> [f64; 3] {
-    [0, 1, 2]
-        .map(|judge| Spread::of(&runs.iter().map(|three| figure(&three[judge])).collect::<Vec<_>>()).mean)
 }

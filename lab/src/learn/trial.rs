@@ -18,7 +18,6 @@ const SCENE: &str = "pick-up-trial";
 const LIFT_S: f64 = 1.2;
 const LATER_S: f64 = 0.2;
 
-/// A trial before it is run.
 #[derive(Debug)]
 pub struct Setup {
     pub world: World,
@@ -46,7 +45,6 @@ impl Setup {
     }
 }
 
-/// Which words of the network's are listened to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Word {
     /// Slip or a warning of it, whichever comes first.
@@ -70,7 +68,6 @@ impl Word {
 /// A trial that was run: what the fingertip said in every tick, and what was true.
 #[derive(Clone, Debug, Default)]
 pub struct Trial {
-    /// When the arm began to lift, s.
     pub lift_s: f64,
     pub outputs: Vec<[i8; 2]>,
     /// Whether that meant slip, and whether it was warned of.
@@ -79,7 +76,6 @@ pub struct Trial {
 }
 
 impl Trial {
-    /// When a tick ran, s.
     pub fn time_s(tick: usize) -> f64 {
         (tick as f64 + 1.0) / f64::from(FRAME_HZ)
     }

@@ -3,8 +3,7 @@
 use tenax_hal_shim::detector::DetectorId;
 use tenax_lab::learn::bench::Bench;
 use tenax_lab::learn::finger::Finger;
-use tenax_lab::learn::holding::False;
-use tenax_lab::learn::report::{Report, of_judges};
+use tenax_lab::learn::report::{Report, told};
 use tenax_lab::learn::trial::{Setup, Word};
 use tenax_lab::learn::{self, Options, Outcome};
 use tenax_sim::session::{self, Board};
@@ -37,17 +36,17 @@ fn before_learning_it_says_nothing_and_afterwards_it_sees_micro_slip() {
     }
     // Nothing is said of a block that is held, swung and carried.
     let holding = outcome.holding;
-    assert_eq!((holding.warning, holding.slip), (False::default(), False::default()), "{holding:?}");
-    assert!(holding.hours > 0.03);
+    assert_eq!((holding.warning.count, holding.slip.count), (0, 0), "{holding:?}");
+    assert!(holding.slip.hours > 0.03);
 
-    let [touch_s, vision_s, bound_s] = of_judges(&outcome.lifts, |run| run.secured_s);
+    let [touch_s, vision_s, bound_s] = told(&outcome.lifts).map(|own| own.secured_s);
     // The bound plans the least force that holds. Nobody secures it with less; a reflex that closes harder at the same instant
     // ends the skin's creep sooner, by 3 ms of 336.
     assert!(
         0.98 * bound_s <= touch_s && touch_s < vision_s,
         "secured after {touch_s} {bound_s} {vision_s} s"
     );
-    let [touch_mm, vision_mm, _] = of_judges(&outcome.pours, |run| run.distance_mm);
+    let [touch_mm, vision_mm, _] = told(&outcome.pours).map(|own| own.distance_mm);
     assert!(touch_mm <= vision_mm / 2.0, "{touch_mm} mm against {vision_mm} mm");
 
     // Another finger, another object, the same learning.

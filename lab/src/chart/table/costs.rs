@@ -49,7 +49,7 @@ impl Costs {
             let copies = copies.chain([Vec::new()]);
             copies.zip(&spent).map(|(copies, spent)| timed(copies, Rc::clone(spent))).collect()
         };
-        fingertip.record(&PLAN, &judges, &mut |_, _| (), &mut |_| ())?;
+        fingertip.record(&PLAN, &judges, &mut |_| ())?;
         // The median over slow frames, which another program's turn of the processor does not move.
         let ns = |n: usize| middle(spent[n].take()).unwrap_or_default();
         let clock_ns = ns(parts.len());

@@ -38,6 +38,8 @@ pub struct Felt<'a> {
     pub believed: DetectorSet,
     /// The array's features, in the frames that bring new ones.
     pub features: Option<&'a Features>,
+    /// Whether the object slid in most frames since the last features.
+    pub slides: bool,
 }
 
 /// Takes a frame: whether it says slip now.
@@ -109,13 +111,11 @@ impl Fingertip {
         network.restore(taught).then_some(network).context("a snapshot that is damaged")
     }
 
-    /// Its recordings, one after the other; `judges` gives fresh ones for each. `steps` hears of each step of the array: its features,
-    /// and whether the object slides. Fails if a scene cannot be made.
+    /// Its recordings, one after the other; `judges` gives fresh ones for each. Fails if a scene cannot be made.
     pub fn record(
         &self,
         plan: &Plan,
         judges: &dyn Fn() -> Vec<Judge>,
-        steps: &mut dyn FnMut(&Features, bool),
         done: &mut dyn FnMut(f64),
     ) -> anyhow::Result<Vec<Heard>> {
         let mut all = Vec::new();
@@ -132,7 +132,7 @@ impl Fingertip {
             let mut drive = |world: &World, _: &[Down]| operator.drive(world, world.slipping());
             let end_s = if story == Story::Pick { LETS_GO_S } else { scene.duration_s() };
             let heard = empty(Kind::Slips, (0.0, end_s));
-            all.push(self.hear(&scene, seed, heard, &mut drive, judges(), steps)?);
+            all.push(self.hear(&scene, seed, heard, &mut drive, judges())?);
             done(all.len() as f64 / count);
         }
         let kinds = [Kind::Quiet, Kind::Disturbed];
@@ -142,7 +142,7 @@ impl Fingertip {
             let mut line = Line::default();
             let mut drive = |_: &World, commands: &[Down]| line.drive(commands);
             let heard = empty(kind, (holding::FROM_S, scene.duration_s()));
-            all.push(self.hear(&scene, seed, heard, &mut drive, judges(), steps)?);
+            all.push(self.hear(&scene, seed, heard, &mut drive, judges())?);
             done(all.len() as f64 / count);
         }
         Ok(all)
@@ -174,7 +174,6 @@ impl Fingertip {
         mut heard: Heard,
         hand: &mut dyn FnMut(&World, &[Down]) -> MotorDrive,
         mut judges: Vec<Judge>,
-        steps: &mut dyn FnMut(&Features, bool),
     ) -> anyhow::Result<Heard> {
         let mut world = World::seeded(scene, Seeds { making: self.finger.making, noise: seed });
         let mut ears = Ears::default();
@@ -190,12 +189,12 @@ impl Fingertip {
             let (frame, commands) = world.frame(sequence, drive);
             slid += u32::from(world.slipping());
             let t_s = world.now_s();
-            ears.take(&frame, drive, &mut |felt| {
+            let slides = 2 * slid > u32::from(FRAMES_PER_SLOW_FRAME);
+            ears.take(&frame, drive, slides, &mut |felt| {
                 for (judge, said) in judges.iter_mut().zip(&mut heard.said) {
                     Verdict::go_on(said, t_s, judge(felt));
                 }
-                if let Some(features) = felt.features {
-                    steps(features, 2 * slid > u32::from(FRAMES_PER_SLOW_FRAME));
+                if felt.features.is_some() {
                     slid = 0;
                 }
             });
@@ -243,7 +242,7 @@ struct Ears {
 }
 
 impl Ears {
-    fn take(&mut self, frame: &Frame, drive: MotorDrive, hear: &mut dyn FnMut(&Felt<'_>)) {
+    fn take(&mut self, frame: &Frame, drive: MotorDrive, slides: bool, hear: &mut dyn FnMut(&Felt<'_>)) {
         let Self { config, senses, samples, detectors, journal, taxels, features } = self;
         if frame.sequence == ZEROED_AT {
             // Refused while something is held, and then it follows by itself.
@@ -264,7 +263,7 @@ impl Ears {
         }
         let new = if slot == ARRAY_COUNT { features.push(taxels) } else { None };
         let believed = detectors.slip().or(detectors.incipient()).and(detectors.credible());
-        hear(&Felt { frame, sensed: &sensed, believed, features: new });
+        hear(&Felt { frame, sensed: &sensed, believed, features: new, slides });
         senses.driven(drive, false, false, 1);
         if frame.ends_slow_frame() {
             senses.think(config, samples, journal);

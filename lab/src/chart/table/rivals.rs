@@ -17,14 +17,24 @@ pub const OF_PAPER: usize = 76;
 const HELD: u32 = frames(50);
 
 /// A row, before it hears anything.
+#[derive(Clone)]
 pub struct Row {
     pub name: String,
     /// Parts of its processor time.
     pub parts: &'static [&'static str],
-    /// The threshold that was chosen, on fingertips that are not scored.
+    /// A rival's thresholds, from which one is chosen on fingertips that are not scored.
+    pub grid: Vec<i32>,
     pub threshold: Option<i32>,
-    /// Fresh judges for each recording: the first report of any counts.
-    pub make: Box<dyn Fn() -> Vec<Judge> + Send + Sync>,
+    /// Fresh judges with this threshold: the first report of any counts.
+    pub make: Make,
+}
+
+type Make = Arc<dyn Fn(i32) -> Vec<Judge> + Send + Sync>;
+
+impl Row {
+    pub fn judges(&self, threshold: Option<i32>) -> Vec<Judge> {
+        (self.make)(threshold.unwrap_or_default())
+    }
 }
 
 /// A detector that ships reports slip, or warns of it, and is believed.
@@ -91,46 +101,20 @@ pub fn logistic(own: Arc<Logistic>) -> Score {
     })
 }
 
-type MakeScore = Arc<dyn Fn() -> Score + Send + Sync>;
-
-/// A rival and the thresholds from which one is chosen.
-pub struct Rival {
-    name: &'static str,
-    parts: &'static [&'static str],
-    pub grid: Vec<i32>,
-    score: MakeScore,
-}
-
-impl Rival {
-    pub fn judge(&self, threshold: i32) -> Judge {
-        above(threshold, (self.score)())
-    }
-
-    /// `cap` is what its threshold was chosen by, false alarms an hour.
-    pub fn row(&self, threshold: i32, cap: f64) -> Row {
-        let score = Arc::clone(&self.score);
-        Row {
-            name: format!("{}, {cap} false/h", self.name),
-            parts: self.parts,
-            threshold: Some(threshold),
-            make: Box::new(move || vec![above(threshold, score())]),
-        }
-    }
-}
-
 /// The rivals whose threshold is chosen. `linear` learned on all features, `paper` on those of the paper alone.
-pub fn rivals(linear: Logistic, paper: Logistic) -> Vec<Rival> {
-    let rival = |name, parts, grid, score| Rival { name, parts, grid, score };
-    let learned = |own: Logistic| -> MakeScore {
+pub fn rivals(linear: Logistic, paper: Logistic) -> Vec<Row> {
+    let rival =
+        |name: &str, parts, grid, make| Row { name: name.to_owned(), parts, grid, threshold: None, make };
+    let learned = |own: Logistic| -> Make {
         let own = Arc::new(own);
-        Arc::new(move || logistic(Arc::clone(&own)))
+        Arc::new(move |at| vec![above(at, logistic(Arc::clone(&own)))])
     };
     let levels = (15..43).map(|n| (16.0 * 2.0_f64.powf(f64::from(n) / 3.0)) as i32).collect();
     let ratios = (3..=24).map(|n| 50 * n).collect();
     let nats = || (-8..=40).map(|n| n * 64).collect();
     vec![
-        rival("vibration threshold", &["loudness"], levels, Arc::new(loudness)),
-        rival("Ft/Fn threshold", &["ratio"], ratios, Arc::new(ratio)),
+        rival("vibration threshold", &["loudness"], levels, Arc::new(|at| vec![above(at, loudness())])),
+        rival("Ft/Fn threshold", &["ratio"], ratios, Arc::new(|at| vec![above(at, ratio())])),
         rival("logistic, 112 features", &["features", "logistic_112"], nats(), learned(linear)),
         rival("logistic, the paper's 76", &["features", "logistic_76"], nats(), learned(paper)),
     ]
@@ -142,8 +126,9 @@ pub fn rows() -> Vec<Row> {
     let row = |name: &str, parts, ids: &'static [DetectorId]| Row {
         name: name.to_owned(),
         parts,
+        grid: Vec::new(),
         threshold: None,
-        make: Box::new(move || ids.iter().map(|&id| shipped(id)).collect()),
+        make: Arc::new(move |_| ids.iter().map(|&id| shipped(id)).collect()),
     };
     vec![
         row("s1", &["s1"], &[S1]),
