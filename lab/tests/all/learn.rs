@@ -5,19 +5,15 @@ use tenax_lab::learn::bench::Bench;
 use tenax_lab::learn::finger::Finger;
 use tenax_lab::learn::report::{Report, told};
 use tenax_lab::learn::trial::{Setup, Word};
-use tenax_lab::learn::{self, Options, Outcome};
+use tenax_lab::learn::{self, Options};
 use tenax_sim::session::{self, Board};
 
 /// So few trials that a test may run them; the bars themselves are measured by `tenax check`.
 const FEW: Options = Options { seed: 11, trials: 4, minutes: 2, lifts: 3, fingertips: 1 };
 
-fn outcome() -> Outcome {
-    learn::run(&FEW, &|_, _| ()).unwrap()
-}
-
 #[test]
 fn before_learning_it_says_nothing_and_afterwards_it_sees_micro_slip() {
-    let outcome = outcome();
+    let outcome = learn::run(&FEW, &|_, _| ()).unwrap();
     assert_eq!(outcome.untaught, 0);
     let score = &outcome.score;
     let first = &score.first;
