@@ -31,7 +31,7 @@ Examples:
 /// The default file of `tenax dataset`.
 const DATASET: &str = "out/array_dataset.csv";
 /// Files of `--out` that `--ship` copies, and their places.
-const SHIPPED_TO: [(&str, &str); 1] = [("network.rs", "logic/src/array/shipped.rs")];
+const SHIPPED_TO: [(&str, &str); 1] = [("network.in", "logic/src/array/network.in")];
 
 /// Train the force array's slip detector from labelled recordings
 #[derive(Debug, clap::Args)]
@@ -54,7 +54,7 @@ pub struct Args {
     /// How to print the report
     #[arg(long, value_enum, default_value_t = Format::Text)]
     report: Format,
-    /// Copy network and card to logic/src/array/shipped.rs and docs/
+    /// Copy the network to logic/src/array/network.in
     #[arg(long)]
     ship: bool,
 }
@@ -182,7 +182,7 @@ fn train(path: &Path, args: &Args) -> anyhow::Result<[(&'static str, Vec<u8>); 4
         report.data.file, report.data.sha256, report.seed
     );
     Ok([
-        ("network.rs", export::rust(&saved, &features, &about).into_bytes()),
+        ("network.in", export::rust(&saved, &features, &about).into_bytes()),
         (network::FILE, serde_json::to_vec(&saved)?),
         ("model-card.md", report.card().into_bytes()),
         ("report.json", serde_json::to_vec_pretty(&report)?),
