@@ -62,7 +62,6 @@ enum Doing {
 }
 
 impl Running {
-    /// None if a sensor or the camera that it needs is missing.
     pub fn begin(what: Behaviour, felt: &Felt<'_>) -> Option<Self> {
         let doing = match what {
             Behaviour::Stroke if felt.grip == Grip::Unknown => return None,
@@ -118,7 +117,6 @@ pub const fn may_answer_slip(what: Behaviour) -> bool {
     matches!(what, Behaviour::Stroke | Behaviour::HandOver | Behaviour::Turn { .. })
 }
 
-/// The line may still command, the load is known, and the reflex is not closing.
 pub const fn may_relax(line: Line, grip: Grip, mode: GripMode) -> bool {
     let commands = matches!(line, Line::Armed { .. } | Line::Trusted);
     let known = !matches!(grip, Grip::Unknown);

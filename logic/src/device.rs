@@ -101,7 +101,6 @@ impl Device {
         self.fingertip.button(is_down);
     }
 
-    /// The motor bridge reports that it has switched itself off; until the next call.
     pub const fn bridge(&mut self, is_off: bool) {
         self.fingertip.bridge(is_off);
     }
@@ -119,7 +118,6 @@ impl Device {
         self.fingertip.was_reset();
     }
 
-    /// Drive of the motor until the next frame, 0.5 ms later.
     pub fn tick(&mut self, frame: &Frame) -> MotorDrive {
         let drive = self.fingertip.tick(frame);
         self.sampled(frame);

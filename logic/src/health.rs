@@ -7,7 +7,6 @@ use tenax_hal_shim::words::Reason;
 pub struct Limits {
     pub low: u16,
     pub high: u16,
-    /// Equal readings in a row that no working sensor gives.
     pub stuck_after: u32,
     /// Bad readings in a row after which it is reported. A single one already has no value.
     pub lost_after: u32,
@@ -46,8 +45,7 @@ pub struct SensorHealth {
 }
 
 impl SensorHealth {
-    /// In range, different from the last, of a sensor that is not lost: the usual case. False, and nothing
-    /// changed, if not.
+    /// True, and counted, if in range, different from the last, and not lost: the usual case.
     #[inline]
     #[must_use]
     pub fn is_plain(&mut self, limits: &Limits, sample: u16) -> bool {
@@ -59,7 +57,6 @@ impl SensorHealth {
         plain
     }
 
-    /// As if plain readings had been taken, this one last.
     pub const fn was_plain(&mut self, last: u16) {
         self.last = last;
         self.same = 0;

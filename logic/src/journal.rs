@@ -35,7 +35,6 @@ impl Journal {
         self.frame
     }
 
-    /// `place`: 0 to 24; larger ones are ignored.
     pub fn tick(&mut self, place: u8, record: TickRecord) {
         if let Some(slot) = self.ticks.get_mut(usize::from(place)) {
             *slot = record;
@@ -57,8 +56,7 @@ impl Journal {
         self.event(EventKind::Fault(fault));
     }
 
-    /// A full queue drops and counts the event. Not inlined: events are rare, and each caller would carry a
-    /// copy of the queue's code.
+    /// A full queue drops and counts the event. Not inlined: events are rare.
     #[inline(never)]
     pub fn event(&mut self, kind: EventKind) {
         self.lost |= matches!(
@@ -88,7 +86,6 @@ impl Journal {
     }
 }
 
-/// Queues the fault of a sensor's change, if there is one.
 pub fn report(journal: &mut Journal, channel: usize, change: Option<Change>) {
     let channel = channel as u8;
     match change {

@@ -3,7 +3,6 @@
 use tenax_hal_shim::channel::{CHANNELS, COUNT, Input, PVDF_COUNT, SWITCH_INPUTS};
 use tenax_hal_shim::frame::Frame;
 
-/// Kept as they come; putting them in order is left to the rare reader.
 #[derive(Clone, Debug, Default)]
 pub struct LastSamples {
     pvdf: [u16; PVDF_COUNT],
@@ -22,7 +21,6 @@ impl LastSamples {
         self.switch_b[select] = frame.switch_b;
     }
 
-    /// 14-bit samples; 0 of an input without a sample yet.
     pub const fn switch_b(&self) -> &[u16; SWITCH_INPUTS as usize] {
         &self.switch_b
     }

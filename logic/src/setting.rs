@@ -1,5 +1,5 @@
-//! Settings: one row each beside its field, in the `settings.rs` of its sense. Number on the wire and in
-//! flash, name, range, default, conversion and the line of `tenax tables settings` come from it.
+//! Settings: one row each beside its field. Number on the wire and in flash, name, range, default, conversion
+//! and the line of `tenax tables settings` come from it.
 
 use core::ops::RangeInclusive;
 
@@ -51,9 +51,7 @@ pub(crate) trait Unit<Field> {
 
 /// Millivolts, kept as a sample. A 14-bit sample has more steps than there are millivolts.
 pub(crate) struct Mv;
-/// Millivolts, kept as a mean in 1/16 of a sample.
 pub(crate) struct MvQ4;
-/// Milliseconds, kept as frames.
 pub(crate) struct Ms;
 pub(crate) struct Number;
 pub(crate) struct Flag;

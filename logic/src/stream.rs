@@ -1,5 +1,4 @@
-//! Messages on request ([`Down::Stream`](tenax_hal_shim::wire::Down::Stream)): samples of every frame, and
-//! sensor readings. No decision depends on it.
+//! Messages on request ([`Down::Stream`](tenax_hal_shim::wire::Down::Stream)); no decision depends on them.
 
 use tenax_hal_shim::channel::{FRAME_HZ, FRAMES_PER_SLOW_FRAME, SWITCH_INPUTS};
 use tenax_hal_shim::frame::Frame;
@@ -18,13 +17,11 @@ pub struct Stream {
     senses: bool,
     left: u32,
     gathered: Raw,
-    /// Sent in the tick after its last frame: that one may have ended a slow frame, and two long messages in
-    /// one tick last into the next.
+    /// Sent in the tick after its last frame: two long messages do not fit in one.
     whole: Raw,
     is_whole: bool,
     raw_is_ready: bool,
     senses_are_due: bool,
-    /// The first frames of a message went by before the request.
     is_torn: bool,
 }
 
@@ -34,7 +31,6 @@ impl Stream {
         self.left = EVER;
     }
 
-    /// `hold_s` 0 ends it.
     pub fn ask(&mut self, raw: bool, senses: bool, hold_s: u16) {
         self.is_torn |= raw && !self.raw && !(self.next as usize).is_multiple_of(FRAMES_PER_RAW);
         self.left = u32::from(hold_s) * FRAME_HZ;

@@ -37,8 +37,7 @@ impl<const N: usize> SlidingCovariance<N> {
         self.each_entry(|entry, row, other| entry - product(&old, row, other) + product(&new, row, other));
     }
 
-    /// Sets the differences of the elements `gone` to 0 in one pass, so that ten lost elements cost no more than
-    /// one.
+    /// One pass for all of `gone`, so that ten lost elements cost no more than one.
     pub fn forget(&mut self, gone: &[bool; ELEMENTS]) {
         for column in &mut self.window {
             for (difference, &gone) in column.iter_mut().zip(gone) {

@@ -11,13 +11,10 @@ use super::preprocess::{Features, Preprocessor, PreprocessorConfig};
 use super::{ARRAY_READ, COVARIANCE_WINDOW, HIDDEN, Reading, ShippedDetector};
 use crate::detectors::{Description, Detector, Said, Sensed};
 
-/// Shares of a slow frame's work, one a tick, about equally long. 0: covariance, spectrum. 1: features of the
-/// spectrum, short lags. 2: long lags, units of the first layer. 3: more of them. 4: the rest, and the
-/// verdict.
+/// Shares of a slow frame's work, one a tick. 0: covariance, spectrum. 1: features of the spectrum, short
+/// lags. 2: long lags, units of the first layer. 3: more units. 4: the rest, and the verdict.
 pub const SHARES: usize = ARRAY_SHARES as usize;
-/// Units of the first layer.
 const H1: usize = HIDDEN[0];
-/// Units of the first layer that are done after shares 2 and 3.
 const SEEN: [usize; 2] = [8, 24];
 const VERDICT_SHARE: usize = SHARES - 1;
 const _: () = assert!(VERDICT_SHARE == 4);
@@ -38,13 +35,11 @@ impl ArrayVerdict {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Judgement {
     pub logit_per_nat: i32,
-    /// Confidence from which a slow frame counts as slip, per mille.
+    /// Confidences at which slip begins and ends, per mille.
     pub on_permille: u16,
-    /// Confidence below which a slow frame counts as no slip, per mille.
     pub off_permille: u16,
-    /// Consecutive slip frames after which slip is reported.
+    /// Consecutive slow frames that begin and end it.
     pub on_frames: u8,
-    /// Consecutive frames without slip after which the report ends.
     pub off_frames: u8,
 }
 
@@ -87,8 +82,7 @@ impl<'m, const N: usize> ArrayDetector<'m, N> {
         self.verdict
     }
 
-    /// One share of [`push`](Self::push), in their order; the verdict with the last. Only share 0 uses
-    /// `reading`.
+    /// One share of [`push`](Self::push), in order; the verdict with the last. Only share 0 uses `reading`.
     pub fn work(&mut self, share: usize, reading: &Reading) -> Option<ArrayVerdict> {
         match share {
             0 => self.preprocessor.add_reading(reading),
@@ -122,7 +116,6 @@ impl<'m, const N: usize> ArrayDetector<'m, N> {
         self.verdict
     }
 
-    /// None without features.
     pub fn logit(&self) -> Option<i32> {
         self.logit
     }
@@ -165,8 +158,7 @@ impl Detector for ShippedDetector {
     const ID: DetectorId = DetectorId::Mlp;
     type Config = ();
 
-    /// Lost frames do their share too: it needs no sample of theirs, and an old verdict would stand
-    /// meanwhile.
+    /// Lost frames do their share too, or an old verdict would stand.
     fn step(&mut self, _config: &(), sensed: &Sensed<'_>) -> Option<Said> {
         let share = sensed.slot.checked_sub(ARRAY_READ)?;
         self.work(share.into(), sensed.taxels).map(|verdict| Said::slip(verdict.slip))

@@ -1,6 +1,5 @@
-//! Logarithmic scale of the features: the bits of a positive IEEE 754 number, read as an integer, are its
-//! base-2 logarithm, at most 0.086 too small (Mitchell 1962). Below `knee` the result is proportional to the
-//! value.
+//! Logarithmic scale of the features: the bits of an IEEE 754 number, read as an integer, are its base-2
+//! logarithm, at most 0.086 too small (Mitchell 1962). Below `knee` the scale is linear.
 
 /// Fraction bits of a feature: 2^9 is one doubling of a power, 2^10 one of an amplitude.
 pub const FEATURE_Q: u32 = 9;

@@ -38,7 +38,6 @@ pub const BINS: usize = SPECTRUM_WINDOW / 2 + 1;
 /// Inputs of the paper's network (Bamshad 2023, section 5.3).
 pub const PAPER_FEATURES: usize = COVARIANCES + BINS;
 pub const FEATURES: usize = PAPER_FEATURES + structure::STRUCTURES;
-/// Units of the network's hidden layers.
 pub const HIDDEN: [usize; 2] = [32, 16];
 /// Differences in the covariance (Bamshad 2023, section 4.2).
 pub const COVARIANCE_WINDOW: usize = 10;

@@ -1,5 +1,3 @@
-//! Readings of the elements in the last half second, and their changes.
-
 use tenax_hal_shim::channel::{ARRAY, CHANNELS, sample_from_mv};
 
 use super::{ELEMENTS, Reading};
@@ -12,14 +10,12 @@ const FRAMES: usize = LAG_MAX + 1;
 pub struct Past {
     frames: [[u16; ELEMENTS]; FRAMES],
     newest: usize,
-    /// Consecutive frames with a reading, `FRAMES` at most.
     runs: [u8; ELEMENTS],
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Arrival {
     pub dead: usize,
-    /// Elements without a reading that had one in the slow frame before.
     pub gone: [bool; ELEMENTS],
     /// Change of the elements' sum, samples. An element without a reading keeps its last value.
     pub change: i32,

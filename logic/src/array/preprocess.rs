@@ -17,19 +17,15 @@ pub type Features = [i16; FEATURES];
 pub struct PreprocessorConfig {
     /// Lag of a difference, slow frames, clamped to 1..=[`LAG_MAX`]. Bamshad 2023, equation 1: 1.
     pub lag: u8,
-    /// samples^2.
     pub covariance_knee: u32,
-    /// samples^2.
     pub spectrum_knee: u32,
     /// samples^2 times the number of elements, for each slow frame of a window.
     pub structure_knee: u32,
-    /// Most elements without a reading with which there are features.
     pub dead_max: u8,
 }
 
 impl PreprocessorConfig {
-    /// For 200 mV/N with half a millivolt (2.5 samples) of noise: 12.5 squared in a difference, ten of which
-    /// make a variance; 6.2 in a reading, 400 of which make a bin's power.
+    /// For 200 mV/N with half a millivolt (2.5 samples) of noise.
     pub const DEFAULT: Self =
         Self { lag: 1, covariance_knee: 128, spectrum_knee: 2_048, structure_knee: 128, dead_max: 2 };
 }
@@ -41,9 +37,8 @@ impl Default for PreprocessorConfig {
 }
 
 /// Covariance over `N` differences, spectrum over 40 sums and structure functions. Of an element that loses
-/// its reading, differences and covariances become 0, the sum keeps its last value, and the structure
-/// functions begin anew. Its return counts as no change: the missed force is added to the spectrum's whole
-/// window, and differences begin with its second reading.
+/// its reading, differences and covariances become 0, and the sum keeps its last value. Its return counts as
+/// no change: the missed force is added to the spectrum's whole window.
 #[derive(Clone, Debug)]
 pub struct Preprocessor<const N: usize = COVARIANCE_WINDOW> {
     config: PreprocessorConfig,
@@ -53,7 +48,6 @@ pub struct Preprocessor<const N: usize = COVARIANCE_WINDOW> {
     lag: usize,
     past: Past,
     ready: bool,
-    /// Force of all elements above rest, samples.
     sum: i32,
     covariance: SlidingCovariance<N>,
     spectrum: SlidingSpectrum<SPECTRUM_WINDOW>,
@@ -117,7 +111,6 @@ impl<const N: usize> Preprocessor<N> {
         }
     }
 
-    /// Second third: the spectrum's features and the shorter lags.
     pub fn add_spectrum(&mut self) {
         self.structure.push_short(&self.past);
         if self.ready {

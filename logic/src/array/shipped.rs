@@ -4,7 +4,6 @@ use super::detector::{Judgement, Model};
 use super::network::{Layer, Mlp};
 use super::preprocess::PreprocessorConfig;
 
-/// A layer that training has checked.
 const fn layer<const I: usize, const O: usize>(
     weights: [[i16; I]; O],
     bias: [i32; O],

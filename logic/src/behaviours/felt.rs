@@ -1,5 +1,4 @@
-//! Input of a behaviour: slip, load, and the skin's cells. These are the camera's markers while it sees, else
-//! the taxels.
+//! Input of a behaviour: slip, load, and the skin's cells: the camera's markers, or the taxels without it.
 
 use tenax_hal_shim::behaviour::{CameraView, MARKERS, NORMAL_STEP_MN, SHEAR_STEP_MN, UNTRACKED};
 
@@ -14,13 +13,11 @@ const SCORES: [(i32, u16); 3] = [(300, 5), (100, 3), (30, 1)];
 /// Change of a cell that counts, mN, or a quarter of its first reading.
 const CHANGE_MN: i32 = 60;
 
-/// Shear of all markers together that is a pull, mN: three times what noise of 10 mN a marker comes to. A
-/// light object's pull is too small for any single one.
+/// Shear of all markers together that is a pull, mN: three times its noise.
 const PULL_MN: i32 = 250;
 
 #[derive(Clone, Copy, Debug)]
 pub struct Felt<'a> {
-    /// None if it is too old.
     pub view: Option<&'a CameraView>,
     pub view_is_new: bool,
     pub cycle_is_over: bool,
@@ -49,8 +46,6 @@ impl Skin {
         felt.taxels.iter().any(Option::is_some).then_some(Self::Taxels(*felt.taxels))
     }
 
-    /// Sum of the cells' scores (section II-A). Markers start from no force; taxels from their first
-    /// readings, when the finger must be empty. None while the skin of the begin gives no readings.
     pub fn score(&self, felt: &Felt<'_>) -> Option<u16> {
         match (self, felt.view) {
             (Self::Markers { .. }, Some(view)) => {
@@ -77,8 +72,7 @@ impl Skin {
         (0..MARKERS).filter_map(sheared).sum::<i32>().abs() > PULL_MN
     }
 
-    /// Cells whose force differs from the first (section II-C). None while the skin of the begin gives no
-    /// readings.
+    /// Cells whose force differs from the first (section II-C). None without readings of that skin.
     pub fn changed(&self, felt: &Felt<'_>) -> Option<u16> {
         match (self, felt.view) {
             (Self::Markers { normal_mn: normals, shear_mn: shears }, Some(view)) => {

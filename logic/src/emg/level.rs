@@ -2,11 +2,9 @@
 
 use super::log2;
 
-/// Offset of every envelope before the logarithm, uV: much smaller envelopes are no muscle's, and their
-/// logarithm would fluctuate.
+/// Offset of every envelope before the logarithm, uV, so that noise near zero does not fluctuate.
 pub const FLOOR_UV: i32 = 30_000;
 pub const FLOOR_LEVEL: i32 = level_of(0);
-/// Level of 3.3 V.
 pub const TOP_LEVEL: i32 = level_of(3_300_000);
 
 /// `log2(uv + FLOOR_UV)`, Q10; error at most 0.01. Below zero it is that of zero.

@@ -5,8 +5,7 @@ pub const LEVEL_Q: u32 = 10;
 /// Envelopes below this count as it, uV: their logarithm would swing with the noise of a pin.
 pub const FLOOR_UV: i32 = 8_000;
 
-/// Four times log2(1 + m) - m half way between two octaves, Q15. A parabola through it and both ends is the
-/// logarithm within 0.01.
+/// Four times log2(1 + m) - m half way between two octaves, Q15: a parabola within 0.01.
 const BEND_Q15: u32 = 11_200;
 
 /// `log2(uv)`, Q10; error at most 0.01.

@@ -1,7 +1,5 @@
-//! EMG of the wearer's two muscles. [`level`] takes logarithms of the envelopes, [`calibration`] learns rest,
-//! closing and opening ([`model`]), [`decide`] finds the wish, [`proof`] and [`trust`] whether it is a
-//! muscle's, [`fit`] whether the calibration still fits. [`Emg`] is the whole; `docs/emg.md` has the
-//! measurements.
+//! EMG of the wearer's two muscles: [`Emg`] finds the wish ([`decide`]), whether it is a muscle's ([`proof`],
+//! [`trust`]), and whether the calibration ([`calibration`], [`model`]) still fits ([`fit`]).
 
 pub mod calibration;
 pub mod constants;
@@ -34,7 +32,6 @@ pub const fn uv_of_sample(sample: u16) -> i32 {
     ((sample as i32 * 12_894) >> 6) - MYO_REST_MV as i32 * 1_000
 }
 
-/// Pairs of readings in a slow frame.
 const PAIRS: u8 = 3;
 
 #[derive(Clone, Debug, Default)]
@@ -123,7 +120,6 @@ impl Default for Emg {
 }
 
 impl Emg {
-    /// None: only very clear contractions move the hand.
     pub fn new(model: Option<&EmgModel>) -> Self {
         Self::of(Decide::new(model))
     }
@@ -156,7 +152,7 @@ impl Emg {
     }
 
     /// One channel (0 flexor, others extensor), uV above the live zero; None counts as a gap. The extensor's
-    /// third reading completes a slow frame; activity and doubt are in the verdict at once.
+    /// third reading completes a slow frame.
     pub fn read(&mut self, channel: usize, uv: Option<i32>) {
         let n = channel.min(1);
         let channel = &mut self.channels[n];
@@ -238,8 +234,7 @@ impl Emg {
         }
     }
 
-    /// 64 readings, one a slow frame, the oldest first, 128 uV a unit: input of [`mains::mains_of`] outside
-    /// the tick. None until full.
+    /// 64 readings, one a slow frame, the oldest first, 128 uV a unit; None until full.
     pub fn window(&self, channel: usize) -> Option<&[i16; WINDOW]> {
         self.channels[channel.min(1)].trust.window()
     }

@@ -1,6 +1,5 @@
 //! Quality of a myosensor's envelope, and the turns that only a muscle makes. Each fault has a duration that
-//! no sound recording reaches (`docs/emg.md`). A doubted electrode loses its weight; it vetoes nothing of the
-//! other one.
+//! no sound recording reaches (`docs/emg.md`). A doubted electrode vetoes nothing of the other one.
 
 use super::mains::{Mains, UNIT_UV, WINDOW};
 
@@ -10,8 +9,7 @@ pub const TOP_UV: i32 = 2_850_000;
 const BRIDGED_READINGS: u8 = 12;
 /// Constant: within 1 % and this, uV.
 const STILL_UV: i32 = 1_500;
-/// Slow frames of a constant envelope that is doubted: 1 s. Sound recordings have 0.77 s in 45 minutes at
-/// most.
+/// Slow frames of a constant envelope that is doubted: 1 s. Sound recordings have 0.77 s at most.
 const FLAT_FRAMES: u16 = 80;
 /// Hum varies by less than 1/16 of its level.
 const HUM_PART: i32 = 16;
@@ -26,8 +24,7 @@ const BACK_FRAMES: u16 = 80;
 /// Slow frames between the points of a curve, 50 ms, and before its first one counts.
 const LAG: usize = 4;
 const FIRST_PROOF_FRAMES: u16 = 20;
-/// Least curvature of a proof, as a part of the level, and slow frames between two proofs: 0.15 s, more than
-/// one jump takes.
+/// Least curvature of a proof, as a part of the level, and slow frames between two proofs: 0.15 s.
 const PROOF_PART: i32 = 12;
 const PROOF_APART: u16 = 12;
 /// Slow frames without a proof after which a contraction has to prove itself again: 1 s.
@@ -72,7 +69,6 @@ impl core::fmt::Display for Quality {
 pub struct Trust {
     quality: Quality,
     good: u16,
-    /// Readings in a row without a number, and the last one with it, uV.
     missing: u8,
     last_uv: i32,
     past_uv: [i32; 2 * LAG],
@@ -146,7 +142,6 @@ impl Trust {
         (self.missing <= BRIDGED_READINGS).then_some(self.last_uv)
     }
 
-    /// Mean of a slow frame, uV; `active_uv`: envelope from which the muscle is active.
     pub fn judge(&mut self, active_uv: i32, uv: i32) {
         self.kept = false;
         let place = usize::from(self.place) % (2 * LAG);
@@ -226,7 +221,6 @@ impl Trust {
         }
     }
 
-    /// Fallen back by 3 % in this frame.
     fn climb(&mut self, uv: i32) -> bool {
         let turned = self.active_for > 0 && uv < self.crest_uv - self.crest_uv / 32 - STILL_UV;
         if self.active_for == 0 || uv >= TOP_UV || turned {
@@ -249,7 +243,6 @@ impl Trust {
         matches!(self.quality, Quality::Good)
     }
 
-    /// Constant for 0.2 s.
     pub const fn is_still(&self) -> bool {
         self.flat >= FLAT_FRAMES / 5
     }

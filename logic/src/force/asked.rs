@@ -1,5 +1,5 @@
-//! Limit of the force that warnings add without confirmation: half of the load. Shear shows sooner whether
-//! the object slides: a sliding object carries Ft = mu Fn, a held one its weight.
+//! Limit of the force that warnings add without confirmation. A sliding object carries Ft = mu Fn, a held one
+//! its weight.
 
 use tenax_hal_shim::wire::Forces;
 
@@ -42,8 +42,7 @@ impl Asked {
         self.0.is_some_and(|began| forces.load_mn > began.load_mn + began.load_mn / GROWTH_PART + on_top_mn)
     }
 
-    /// True if the load has grown by more than 1/8 and `on_top_mn`, and the shear by less than a quarter of a
-    /// sliding object's.
+    /// True if the load has grown by more than 1/8 and `on_top_mn`, and the shear by less than 1/4 of sliding.
     pub fn is_held(&self, forces: &Forces, on_top_mn: i32) -> bool {
         let (Some(began), now) = (self.0, at(forces)) else { return false };
         let (Some(began_mn), Some(now_mn)) = (began.ft_mn, now.ft_mn) else { return false };

@@ -1,28 +1,23 @@
 //! Drift of the quadrants (cells A to D, clockwise) in a grasp. The element on them is rigid: A + C = B + D.
-//! One cell that drifts breaks this, and is computed from the other three. A slow fall of all with the motor
-//! at rest, beyond what skin yields, is drift of all. If two cells have sunk to nothing, the sensor gives no
-//! force.
+//! One cell that breaks this is computed from the other three. A slow fall of all with the motor at rest,
+//! beyond what skin yields, is drift of all.
 
 use tenax_hal_shim::channel::FSR_COUNT;
 
 use super::sensor::CARRIES_MN;
 
 const SIGNS: [i32; FSR_COUNT] = [1, -1, 1, -1];
-/// Tolerated contradiction of the cells, mN, and as a part of the load: hysteresis and gains (Interlink's
-/// guide) leave so much.
+/// Tolerated contradiction of the cells, mN, and as a part of the load (Interlink's guide).
 const TOLERATED_MN: i32 = 60;
 const TOLERATED_PART: i32 = 20;
 /// Readings of contradiction after which a cell is blamed: half a second.
 const CONTRADICTS_FOR: u8 = 40;
-/// Readings of a new grasp over which the cells' gains are learned: half a second.
 const LEARN: u8 = 40;
 const LEARN_SHIFT: u32 = 3;
 const GAIN_Q: u32 = 12;
-/// A cell's change is measured from its average over `2^ANCHOR_SHIFT` readings, 3 s, with as many fraction
-/// bits. Votes decay over `2^VOTES_SHIFT` readings.
+/// Averages of a cell over `2^ANCHOR_SHIFT` readings, 3 s; decay of votes over `2^VOTES_SHIFT` readings.
 const ANCHOR_SHIFT: u32 = 8;
 const VOTES_SHIFT: u32 = 9;
-/// Ratio of votes from which another cell is blamed instead.
 const CLEARLY: i32 = 2;
 /// Votes that exceed noise. A vote is 2^VOTE_SHIFT mN^2.
 const HEARD: i32 = 200;
@@ -32,12 +27,10 @@ const CELL_FOLLOWS_MN: i32 = 3;
 const ALL_FOLLOWS_MN: i32 = 6;
 /// Readings after the motor's last drive before a load stands still: 0.5 s.
 const STILL_FOR: u32 = 40;
-/// Part of a load that skin may yield by itself.
 const YIELDS_PART: i32 = 5;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cells {
-    /// Forces of A to D without drift, mN.
     Known([i32; FSR_COUNT]),
     /// Too few cells carry a force: it cannot be told from drift.
     Sunk,
@@ -53,8 +46,7 @@ pub struct Drift {
     /// Readings since the grasp began, and A - B + C - D as a part of the load, caused by unequal gains.
     learned: u8,
     gain: i32,
-    /// Averages of 3 s, mN with [`ANCHOR_SHIFT`] fraction bits, and the part of the contradiction that each
-    /// cell explains.
+    /// Averages of 3 s, mN Q8, and the part of the contradiction that each cell explains.
     anchors: [i32; FSR_COUNT],
     votes: [i32; FSR_COUNT],
     /// Drift of all cells together, mN, and the load at which they were constant.
@@ -84,7 +76,6 @@ impl Drift {
         Cells::Known(cells)
     }
 
-    /// `still`: readings since the motor was driven. Call it once after each reading, outside of the tick.
     pub fn think(&mut self, read_mn: [i32; FSR_COUNT], loaded_mn: i32, still: u32) {
         let load_mn: i32 = self.corrected(read_mn).iter().sum();
         if load_mn < loaded_mn {
@@ -104,7 +95,6 @@ impl Drift {
         cells.map(|mn| (mn + self.sunk_mn / FSR_COUNT as i32).max(0))
     }
 
-    /// If only the blamed cell carries a force, nothing is held: its reading is drift.
     fn let_go(&mut self, read_mn: [i32; FSR_COUNT], opened: bool) {
         let carries = |n: usize| read_mn[n] >= CARRIES_MN;
         if let Some(blamed) = self.blamed()
@@ -203,7 +193,6 @@ mod tests {
     const STILL: Motor = Motor { still: 1_000, opened: false };
     const MOVES: Motor = Motor { still: 0, opened: false };
 
-    /// Cells under a load and a shear along both axes, mN.
     fn cells(load: f64, x: f64, y: f64) -> [f64; FSR_COUNT] {
         [load + x + y, load + x - y, load - x - y, load - x + y].map(|four| four / 4.0)
     }
@@ -225,7 +214,6 @@ mod tests {
         }
     }
 
-    /// Taken, and held for a second.
     fn holding(cells: [f64; FSR_COUNT]) -> Drift {
         let mut drift = Drift::default();
         (0..40).for_each(|_| _ = step(&mut drift, read(cells), LOADED_MN, MOVES));

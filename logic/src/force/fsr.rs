@@ -1,5 +1,5 @@
-//! Voltage of a force sensing resistor's quadrant to force: the inverse of `front_end::fsr_mv` as a table of
-//! [`KNOTS`], straight lines between; error below 2 % or 6 mN.
+//! Force of a quadrant from its voltage: the inverse of `front_end::fsr_mv` as a table of [`KNOTS`]; error
+//! below 2 % or 6 mN.
 
 use tenax_hal_shim::channel::{REFERENCE_MV, SAMPLE_MAX};
 use tenax_hal_shim::front_end::FSR_REST_MV;

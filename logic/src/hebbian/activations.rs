@@ -1,5 +1,5 @@
-//! Activations of the tactile nodes: readings over their maximum (Tada 2006, section II.C). The sign of a
-//! vibration is dropped; that of a pressure is kept. The reading of an unloaded finger can be taken as zero.
+//! Activations of the tactile nodes: readings over their maximum (Tada 2006, section II.C), without the sign of
+//! a vibration.
 
 use dsp_fixedpoint::Q32;
 
@@ -16,7 +16,6 @@ const ONE: i32 = 1 << 26;
 pub enum Sense {
     /// The sign is dropped: 0 to 1.
     Vibration,
-    /// The sign is the direction of load or shear: -1 to 1.
     Pressure,
 }
 
@@ -34,7 +33,6 @@ impl<const N: usize> Activations<N> {
         Self(activations.map(|activation| activation.into_bits().clamp(-ONE, ONE)))
     }
 
-    /// 2^26 is 1.
     pub const fn as_bits(&self) -> &[i32; N] {
         &self.0
     }
@@ -43,17 +41,14 @@ impl<const N: usize> Activations<N> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NormaliserConfig<const N: usize> {
     pub senses: [Sense; N],
-    /// Smallest maximum of each receptor, raw, so that the noise of a dead receptor stays small. 0 counts as
-    /// 1.
+    /// Smallest maximum of each receptor, raw: a dead receptor's noise stays small. 0 counts as 1.
     pub floors: [u32; N],
     /// Range of the front end, raw: larger values clip.
     pub ceiling: u32,
-    /// The maximum is that of an average over about `2^average_shift` readings, 16 at most, so that a spike
-    /// makes no receptor insensitive.
+    /// The maximum is that of an average over about `2^average_shift` readings, shift at most 16.
     pub average_shift: u32,
 }
 
-/// The sum of 2^16 readings of 32 bits is below 2^48.
 const AVERAGE_SHIFT_MAX: u32 = 16;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -110,8 +105,7 @@ impl<const N: usize> Normaliser<N> {
         }
     }
 
-    /// Lets the maxima rise. Call it only when learning is allowed, so that an impact or a noisy motor makes
-    /// no receptor insensitive.
+    /// Lets the maxima rise. Call it only when learning is allowed.
     pub fn observe(&mut self, config: &NormaliserConfig<N>, raw: &[i32; N]) {
         let shift = config.average_shift.min(AVERAGE_SHIFT_MAX);
         for (scale, &raw) in self.scales.iter_mut().zip(raw) {
@@ -155,7 +149,6 @@ impl<const N: usize> Normaliser<N> {
         self.scales.map(|scale| scale.largest)
     }
 
-    /// Each clamped between its floor and the ceiling.
     pub fn from_maxima(config: &NormaliserConfig<N>, maxima: &[u32; N]) -> Self {
         let mut normaliser = Self::new(config);
         for (scale, &largest) in normaliser.scales.iter_mut().zip(maxima) {

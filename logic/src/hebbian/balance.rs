@@ -3,11 +3,10 @@
 use tenax_hal_shim::wire::NETWORK_OUTPUTS;
 use tenax_hal_shim::words::{Code, Codes};
 
-/// Largest lead of one code over its opposite, lessons: 2 s.
 const AHEAD_MAX: i16 = 2_000;
 
-/// Lessons of each code less those of its opposite. Hebb's rule correlates: a constant input learns whichever
-/// code was taught longer, so a code that is too far ahead is not taught until its opposite was.
+/// Lessons of each code less those of its opposite: Hebb's rule lets a constant input learn whichever code was
+/// taught longer.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Balance([i16; NETWORK_OUTPUTS]);
 

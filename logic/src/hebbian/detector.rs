@@ -1,12 +1,9 @@
-//! The Hebbian detector: films' envelopes and gauges' loads are the network's inputs, a camera teaches it
-//! over the line, and its outputs from touch alone report slip and warn of it.
+//! The Hebbian detector: films and gauges are the network's inputs, a camera teaches it over the line at 1 kHz,
+//! and its outputs from touch alone report slip and warn of it.
 //!
-//! Lessons are taught at 1 kHz, in every other tick; the maxima rise in the ticks between. Slip is reported
-//! while the films' part of o1 is far enough below 0 (and below the films' own noise,
-//! [`noise`](super::noise)) on a finger that holds something, and not while an impact rings or the motor runs
-//! fast. The gauges' part grows with the grip and is not used. Slip begins in one place: vibration of all
-//! films is slip only if it lasts. Ft/Fn near the learned ratio ([`Ahead`]) is a warning. The direction comes
-//! from the gauges alone (Tada 2006, section I).
+//! Slip is reported while the films' part of o1 is far enough below 0 and below the films' own [`noise`](super::noise)
+//! on a finger that holds something, and nothing is loud. Vibration of all films is slip only if it lasts. Ft/Fn
+//! near the learned ratio ([`Ahead`]) is a warning. The direction comes from the gauges (Tada 2006, section I).
 
 use core::ops::Range;
 
@@ -29,7 +26,6 @@ use crate::hebbian::settings::HebbianConfig;
 pub type Learned = snapshot::Contents<RECEPTORS, NETWORK_OUTPUTS>;
 pub const SNAPSHOT_LENGTH: usize = snapshot::length(RECEPTORS, NETWORK_OUTPUTS);
 
-/// Raw readings are samples (14 bits) with 4 fraction bits.
 pub static NORMALISER: NormaliserConfig<RECEPTORS> = NormaliserConfig {
     senses: {
         let mut senses = [Sense::Pressure; RECEPTORS];
@@ -57,10 +53,8 @@ pub static NORMALISER: NormaliserConfig<RECEPTORS> = NormaliserConfig {
 const FILMS: Range<usize> = 0..PVDF_COUNT;
 const GAUGES: Range<usize> = PVDF_COUNT..RECEPTORS;
 const ONE: i64 = 1 << 26;
-/// Most films that hear slip that is not everywhere.
 const SOMEWHERE_MAX: usize = 6;
 
-/// The tick after the forces, which has more room than theirs.
 const SHEAR_IS_JUDGED: u8 = slot_of(Job::Forces) + 1;
 const CYCLE_ENDS: u8 = 20;
 /// Least value of the second output that tells a direction; 128 is 1.
@@ -178,8 +172,7 @@ impl HebbianDetector {
         self.learn(config, sensed, learns);
     }
 
-    /// Call it in slot [`SHEAR_IS_JUDGED`], before its tick. `anew`: nothing is touched, or a muscle is
-    /// active.
+    /// Call it in slot [`SHEAR_IS_JUDGED`], before its tick. `anew`: nothing is touched, or a muscle is active.
     #[inline(never)]
     fn foretell(&mut self, config: &HebbianConfig, forces: Option<&Forces>, grasp: bool, anew: bool) {
         if anew {

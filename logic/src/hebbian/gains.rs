@@ -1,13 +1,11 @@
-//! Parts that readings of vibration add to an output, in one multiplication each: weight over maximum, kept
-//! while nothing is learned. Within 2^-24 of [`Network::parts`](super::Network::parts), in the same format
-//! (Q26).
+//! Parts that films add to an output, in one multiplication each: weight over maximum, Q26, within 2^-24 of
+//! [`Network::parts`](super::Network::parts).
 
 use super::arithmetic::Reciprocal;
 use super::network::Weight;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Gain {
-    /// Larger readings are limited to it (activation 1).
     largest: u32,
     /// Left shift of a reading, so that the maximum has 31 bits.
     shift: u32,

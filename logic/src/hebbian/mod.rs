@@ -1,15 +1,12 @@
-//! The Hebbian network, which learns slip from a camera (Tada 2006, equations 1 to 6). `docs/hebbian.md` has
-//! the measured limits.
+//! The Hebbian network, which learns slip from a camera (Tada 2006, equations 1 to 6; limits in
+//! `docs/hebbian.md`), in integers: tactile nodes t_j ([`activations`]), weights w_ij ([`network`]), outputs
+//! o_i, codes v_i ([`teacher`]).
 //!
 //! ```text
 //! o_i   = f(sum_j t_j w_ij + v_i)                            (3), f clips at +-1 (4)
 //! dw_ij = alpha r_ij t_j v_i - beta w_ij                     (5)
 //! r_ij  = (|w_ij| + delta) / ((sum_j |w_ij|) + delta)        (6)
 //! ```
-//!
-//! Tactile nodes t_j ([`activations`]) are connected to outputs o_i by weights w_ij ([`network`]); a camera
-//! gives codes v_i ([`teacher`]). Everything is integer: a single drops an update below 2^-24 of its weight,
-//! which is every useful one at 1 kHz.
 
 pub mod activations;
 mod arithmetic;

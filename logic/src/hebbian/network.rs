@@ -28,9 +28,7 @@ pub type Weight = Q32<27>;
 pub type Output = Q32<26>;
 
 const ONE: i64 = 1 << 26;
-/// Largest weight, and the smallest's complement: a little less than 8.
 const LIMIT: i32 = (1 << 30) - 1;
-/// From a weight (Q27) to a magnitude (Q23), for r.
 const MAGNITUDE_SHIFT: u32 = 27 - 23;
 /// More inputs could overflow the sums.
 const INPUTS_MAX: usize = 31;
@@ -162,21 +160,18 @@ const fn in_use(weight: i64) -> i32 {
     (weight >> 32) as i32
 }
 
-/// Product of a weight and an activation, units of [`Output`], rounded down: the upper word of `(2 w) (16
-/// t)`, one instruction; neither factor leaves 32 bits.
+/// Product, units of [`Output`], rounded down: the upper word of `(2 w) (16 t)`, one instruction.
 const fn part(weight: i64, t: i32) -> i32 {
     (((in_use(weight) << 1) as i64 * (t << 4) as i64) >> 32) as i32
 }
 
-/// |w|, Q23, below 2^26. A negative number's complement is its magnitude less 2^-27, and takes one
-/// instruction.
+/// |w|, Q23, below 2^26. A negative number's complement is its magnitude less 2^-27.
 const fn magnitude(weight: i64) -> u32 {
     let weight = in_use(weight);
     ((weight ^ (weight >> 31)) as u32) >> MAGNITUDE_SHIFT
 }
 
-/// Limits a Q59 weight to +-[`LIMIT`] by its upper word, one SSAT instruction; the lower word may keep any
-/// value.
+/// Limits a Q59 weight to +-[`LIMIT`] by its upper word, one SSAT instruction.
 fn limited(weight: i64) -> i64 {
     let upper = in_use(weight).clamp(-LIMIT - 1, LIMIT);
     (i64::from(upper) << 32) | (weight & 0xFFFF_FFFF)

@@ -1,18 +1,14 @@
-//! Noise floor of the films' part of o1 with the present weights, measured while the finger is unloaded and
-//! nothing is loud. Without it, a noisy film would report slip without end.
+//! Noise floor of the films' part of o1, measured while the finger is unloaded and nothing is loud.
 
 use tenax_hal_shim::channel::FRAMES_PER_SLOW_FRAME;
 
-/// The mean follows over `2^FOLLOWS` cycles, 0.1 s.
 const FOLLOWS: u32 = 3;
-/// Noise floor, in means of quiet.
 const FLOOR: i64 = 6;
 
 #[derive(Clone, Debug, Default)]
 pub(super) struct Noise {
     /// Sum of this slow frame, units of an output; positive if the films' part is below 0.
     sum: i64,
-    /// Averaged sum of quiet slow frames, units of an output.
     nothing: Option<i64>,
     floor: i64,
 }
@@ -23,7 +19,6 @@ impl Noise {
         self.sum -= by_films;
     }
 
-    /// `is_nothing`: the finger is unloaded, and nothing is loud.
     #[inline(never)]
     pub(super) fn end_cycle(&mut self, is_nothing: bool) {
         let sum = core::mem::take(&mut self.sum).max(0);

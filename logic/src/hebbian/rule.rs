@@ -1,16 +1,12 @@
-//! Learning rates, as settings and in the fixed-point formats of the update.
-
 use core::ops::RangeInclusive;
 
-/// Rates of equations 5 and 6 for one update. At 1 kHz, a beta of 10 000 ppb forgets in 100 s of being
-/// taught.
+/// Rates of equations 5 and 6 for one update.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Config {
     pub alpha_ppb: u32,
     /// With 0, weights only stop at their limit.
     pub beta_ppb: u32,
-    /// Constant share of each connection, parts per million of a weight of 1. Never 0: a weight of 0 would
-    /// then stay 0.
+    /// Constant share of each connection, parts per million of a weight of 1. Never 0.
     pub delta_ppm: u32,
 }
 
@@ -32,11 +28,9 @@ impl Default for Config {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Rule {
-    /// Q35, below 2^31, rounded down.
     pub(super) alpha: u32,
     /// Q32, above -2^28, rounded to nearest.
     pub(super) minus_beta: i32,
-    /// Q23, in 2^13..=2^26, rounded to nearest.
     pub(super) delta: u32,
 }
 

@@ -1,5 +1,3 @@
-//! Settings of the Hebbian detector.
-
 use super::{LearningConfig, Rule, TeacherConfig};
 use crate::setting::settings;
 

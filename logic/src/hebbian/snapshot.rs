@@ -26,7 +26,6 @@ const fn header_of<const I: usize, const O: usize>() -> [u8; HEADER] {
     [VERSION, I as u8, O as u8, 0]
 }
 
-/// Small enough to be copied in a tick; the bytes are made when there is more time.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Contents<const I: usize, const O: usize> {
     maxima: [u32; I],
@@ -39,7 +38,6 @@ impl<const I: usize, const O: usize> Contents<I, O> {
         Self { maxima: normaliser.maxima(), weights: network.weights(), more }
     }
 
-    /// None if the buffer is shorter than [`length`].
     pub fn write<'a>(&self, buffer: &'a mut [u8]) -> Option<&'a [u8]> {
         let snapshot = buffer.get_mut(..length(I, O))?;
         let (body, crc) = snapshot.split_last_chunk_mut::<WORD>()?;
@@ -57,7 +55,6 @@ impl<const I: usize, const O: usize> Contents<I, O> {
     }
 }
 
-/// None if the buffer is shorter than [`length`].
 pub fn save<'a, const I: usize, const O: usize>(
     normaliser: &Normaliser<I>,
     network: &Network<I, O>,

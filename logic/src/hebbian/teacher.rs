@@ -1,13 +1,11 @@
 //! The camera as a teacher (Tada 2006, equations 1 and 2). There is a lesson only while the finger holds
-//! something, nothing disturbs it, and fresh codes without contradiction say that something moves; otherwise
-//! weights are neither learned nor forgotten. Codes chatter (section III.B), so each is the median of the
-//! last three messages.
+//! something undisturbed, and fresh codes agree that something moves. Codes chatter (section III.B), so each is
+//! the median of the last three messages.
 
 use tenax_hal_shim::words::{Code, Codes, NoLesson};
 
 use crate::latest;
 
-/// Messages that a code is the median of.
 const MEMORY: usize = 3;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,9 +23,7 @@ impl Default for TeacherConfig {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Situation {
-    /// Loaded: the receptors feel an object.
     pub grasp: bool,
-    /// The motor runs, the hand is struck or swung, or a receptor has just been lost.
     pub disturbed: bool,
 }
 
@@ -39,8 +35,7 @@ pub struct Teacher {
 }
 
 impl Teacher {
-    /// Codes of an older picture than the newest are dropped. After a silence of more than `fresh_ms`, the
-    /// codes before it no longer count.
+    /// Codes of an older picture than the newest are dropped; a silence of `fresh_ms` forgets those before it.
     pub fn receive(&mut self, config: &TeacherConfig, codes: Codes, age_ms: u16) {
         if self.age_ms > config.fresh_ms {
             self.heard = 0;
@@ -53,7 +48,6 @@ impl Teacher {
         self.age_ms = age_ms;
     }
 
-    /// Call it in every second frame.
     pub fn tick_ms(&mut self) {
         self.age_ms = self.age_ms.saturating_add(1);
     }

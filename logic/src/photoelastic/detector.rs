@@ -9,7 +9,6 @@ use tenax_hal_shim::channel::frames;
 /// Time after an impact or a fast run of the motor: the load still changes, and the filters ring.
 const AFTER_NOISE: u32 = frames(160);
 
-/// Time for which a report may continue while the motor answers it: the strip still flickers.
 const ANSWERED: u32 = frames(50);
 
 #[derive(Clone, Copy, Debug, Default)]
@@ -42,7 +41,6 @@ impl Detector for PhotoelasticDetector {
 }
 
 impl PhotoelasticDetector {
-    /// Cold, since most hands have no head.
     #[cold]
     #[inline(never)]
     fn judge(&mut self, config: &HeadConfig, sensed: &Sensed<'_>) -> Said {

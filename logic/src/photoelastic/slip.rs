@@ -1,12 +1,9 @@
-//! Whether the ac part is slip: large for long enough, and swinging. An impact rings and dies away; a force
-//! that changes swings once.
+//! The ac part is slip if it is large for long enough and swings: an impact dies away, a force swings once.
 
 use super::split::{Q, Split};
 use tenax_hal_shim::channel::frames;
 
-/// Longer than an impact rings.
 const LASTS: u32 = frames(45);
-/// Consecutive oscillations that slip needs.
 const SWINGS: u16 = 3;
 
 #[derive(Clone, Copy, Debug, Default)]
@@ -41,7 +38,6 @@ mod tests {
     use super::*;
     use std::f64::consts::TAU;
 
-    /// Frames from which on it is said, if at all, of a tone that dies away in `decay` frames.
     fn said(hz: f64, size: f64, decay: f64) -> Option<u32> {
         let (mut split, mut presence) = (Split::default(), Presence::default());
         (0..2_000).find(|&n| {

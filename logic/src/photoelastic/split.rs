@@ -1,21 +1,17 @@
-//! Splits the head's signal: ac shows slip, dc normal force (section 3). Two high-passes give ac, since one
-//! would pass the slope of an evenly changing force; dc is the mean of a cycle's 25 samples. Samples around
-//! mid-scale in Q14; every state stays below 2^29, so no difference overflows.
+//! Splits the head's signal: ac, by two high-passes, shows slip; dc, the mean of a slow frame, normal force
+//! (section 3). Samples around mid-scale in Q14; every state stays below 2^29.
 
 use tenax_hal_shim::channel::FRAMES_PER_SLOW_FRAME;
 
 use crate::low_pass::LowPass;
 
-/// Lower edge of the slip band, twice.
 pub const BAND_LOW_HZ: u32 = 20;
 pub const BAND_HIGH_HZ: u32 = 250;
 pub const ENVELOPE_HZ: u32 = 12;
 pub const Q: u32 = 14;
 
 const MIDDLE: i32 = 1 << 13;
-/// A swing that turns back within this much of zero is noise: two samples.
 const NOISE: i32 = 2 << Q;
-/// Frames without a swing after which the count begins anew: 8 Hz is the slowest.
 const PERIOD_MAX: u16 = 250;
 
 static HIGH_PASS: LowPass = LowPass::of(BAND_LOW_HZ as f64);
@@ -34,7 +30,6 @@ pub struct Split {
     count: u32,
     is_above: bool,
     since: u16,
-    /// Duration of one swing, 1/16 of a frame.
     period_q4: u16,
     swings: u16,
 }
@@ -104,7 +99,6 @@ impl Split {
         self.swings
     }
 
-    /// 1/16 of a frame; 0 if it is not known.
     pub const fn period_q4(&self) -> u16 {
         if self.swings < 2 { 0 } else { self.period_q4 }
     }

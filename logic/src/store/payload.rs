@@ -8,11 +8,9 @@ use crate::config::Config;
 use crate::emg::model::{EmgModel, MODEL_WORDS};
 use crate::force::sensor::ZERO_LIMIT_UV;
 
-/// Bits of a settings word that hold the value; the setting's number is above them.
 const VALUE_BITS: u32 = 24;
 
 pub type SettingsBytes = Vec<u8, { 4 * SettingId::ALL.len() }>;
-/// A word for each quadrant, uV above rest.
 pub type ZeroBytes = [u8; 4 * FSR_COUNT];
 
 pub type EmgBytes = [u8; 4 * MODEL_WORDS];
@@ -52,7 +50,6 @@ pub fn of_zero(zero_uv: &[i32; FSR_COUNT]) -> ZeroBytes {
     bytes_of(*zero_uv)
 }
 
-/// None if one is no offset of a working sensor.
 pub fn zero(bytes: &[u8]) -> Option<[i32; FSR_COUNT]> {
     let zero_uv = words_of::<FSR_COUNT>(bytes)?;
     let allowed = zero_uv.iter().all(|uv| uv.unsigned_abs() <= ZERO_LIMIT_UV.unsigned_abs());

@@ -70,7 +70,6 @@ pub(super) struct Tag {
 }
 
 impl Tag {
-    /// None if the payload is too long.
     pub fn new(kind: u8, words: usize) -> Option<Self> {
         Some(Self { kind, words: u8::try_from(words).ok()? })
     }
@@ -89,8 +88,7 @@ impl Tag {
         (tag.to_word() == word).then_some(tag)
     }
 
-    /// The word's own tag; both candidates if one bit contradicts the complement; none if more do. A bit that
-    /// is half programmed may read as 0 or 1.
+    /// The word's own tag; both candidates if one bit contradicts the complement (half programmed); else none.
     pub fn read_from(word: u32) -> impl Iterator<Item = Self> {
         let [kind, words, not_kind, not_words] = word.to_le_bytes();
         let (read, complement) = (Self { kind, words }, Self { kind: !not_kind, words: !not_words });
@@ -141,8 +139,7 @@ impl<'a> Saving<'a> {
         Self { sector, at, tag, sequence, payload, digest: CRC.digest(), step: 0, mark }
     }
 
-    /// Programs the next word; true when it was the last one, and the record counts. After a failure it never
-    /// will.
+    /// Programs the next word; true when it was the last one. After a failure it never counts.
     pub fn step(&mut self, area: &mut impl FlashArea) -> Result<bool, FlashFailed> {
         if let Some(place) = self.mark.take() {
             super::program(area, self.sector, place, MARK)?;

@@ -1,5 +1,4 @@
-//! The PVDF films: which of their samples are valid, suspect or none. All twelve are tested at once, two in a
-//! word; only if one is not plain is each looked at by itself.
+//! Validity of the PVDF films' samples. All twelve are tested at once, two in a word.
 
 use tenax_hal_shim::channel::{CHANNELS, FRAME_HZ, PVDF, PVDF_COUNT, SAMPLE_MAX, SLOW_HZ, sample_from_mv};
 use tenax_hal_shim::front_end::PVDF_CUT_MV;
@@ -8,16 +7,13 @@ use tenax_hal_shim::words::Reason;
 use super::Trust;
 use crate::health::{Change, Limits, SensorHealth};
 
-/// Equal samples in a row that a live film, with 30 samples rms of noise, hardly ever gives: it is suspect
-/// before the jump of a freeze has come through its filters.
+/// Equal samples in a row that a live film hardly ever gives; the filters have not passed the freeze yet.
 const DOUBTED_AFTER: u32 = 2;
 
-/// Output of an amplifier without its film, samples: resistors, offset and the film's rest move it by less
-/// than 40 mV.
+/// Output of an amplifier without its film, samples, within 40 mV.
 const CUT: core::ops::RangeInclusive<u16> =
     sample_from_mv(PVDF_CUT_MV - 40)..=sample_from_mv(PVDF_CUT_MV + 40);
-/// Slow frames of a cut wire, 0.5 s. Only vibration of a multiple of [`SLOW_HZ`], within 1 Hz, is always seen
-/// in one place.
+/// Slow frames of a cut wire: 0.5 s.
 const CUT_AFTER: u8 = (SLOW_HZ / 2) as u8;
 
 const LIMITS: Limits = Limits::of(&CHANNELS[PVDF], FRAME_HZ);

@@ -9,7 +9,6 @@ const FIGURE_14: Curve = Curve {
 const OPEN: Hints = Hints { unloaded: true, force_mn: None };
 const NOTHING: Hints = Hints { unloaded: false, force_mn: None };
 
-/// The level of a force, N, under a shear of `q` times it.
 fn level(force_n: f64, q: f64) -> i32 {
     let phase = FRAC_PI_2 * (force_n / 1.7).powf(1.0 / (6.0_f64 / 1.7).log2());
     let squared = 1.0 + 4.0 * q * q;

@@ -1,5 +1,3 @@
-//! Films with hum, and what is left of it in their envelopes; each beside films that hear none.
-
 use core::f64::consts::TAU;
 use std::vec::Vec;
 
@@ -8,12 +6,10 @@ use crate::config::Config;
 use crate::vibration::VibrationDetector;
 use crate::vibration::settings::VibrationConfig;
 
-/// One in 16 of a sample, as the sum of four dithered codes is fine.
 fn sample(x: f64, noise: u32) -> u16 {
     (8_192.0 + x + f64::from(noise % 1_000) / 1_000.0) as u16
 }
 
-/// Envelopes of all films, samples, once a tick, of what `heard` gives at each instant, s.
 fn envelopes(for_s: f64, heard: impl Fn(f64) -> f64) -> Vec<f64> {
     envelopes_of(&Config::default().vibration, for_s, heard)
 }
@@ -51,7 +47,6 @@ fn hum_goes_also_where_the_mains_is_half_a_hertz_off() {
     }
 }
 
-/// And stays where nobody has said that the mains is at 60 Hz.
 #[test]
 fn hum_of_60_hz_goes_where_the_mains_is_said_to_be_that() {
     for (mains_60_hz, most) in [(true, 0.08), (false, 1.1)] {
