@@ -18,12 +18,12 @@ use crate::setting::SettingId;
 use heapless::Vec;
 use tenax_hal_shim::channel::FRAMES_PER_SLOW_FRAME;
 use tenax_hal_shim::frame::Frame;
-use tenax_hal_shim::motor::{Duty, MotorDrive};
+use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::schedule::{Job, slot_of};
 use tenax_hal_shim::wire::{
     About, Answer, Down, Identity, Last, Received, Refusal, SCHEMA, Senses, Setting, Up,
 };
-use tenax_hal_shim::words::{Fault, Kept, Line};
+use tenax_hal_shim::words::{Kept, Line};
 
 use crate::fingertip::Fingertip;
 use crate::samples::LastSamples;
@@ -34,7 +34,7 @@ use crate::stream::Stream;
 
 #[derive(Clone, Debug)]
 pub struct Device {
-    fingertip: Fingertip,
+    pub fingertip: Fingertip,
     samples: LastSamples,
     keeper: Keeper,
     session: Session,
@@ -61,14 +61,6 @@ impl Device {
         }
     }
 
-    pub const fn fingertip(&self) -> &Fingertip {
-        &self.fingertip
-    }
-
-    pub const fn fingertip_mut(&mut self) -> &mut Fingertip {
-        &mut self.fingertip
-    }
-
     pub fn restore(&mut self, kept: Kept, payload: &[u8]) {
         self.fingertip.restore(kept, payload);
         self.keeper = self.fingertip.keeper();
@@ -91,31 +83,6 @@ impl Device {
         let all = SettingId::ALL.into_iter().map(|id| self.setting(id));
         all.take_while(|setting| settings.push(*setting).is_ok()).for_each(drop);
         About { identity: self.identity, schema: SCHEMA, frames: self.stream.next(), settings }
-    }
-
-    pub fn report(&mut self, fault: Fault) {
-        self.fingertip.report(fault);
-    }
-
-    pub const fn button(&mut self, is_down: bool) {
-        self.fingertip.button(is_down);
-    }
-
-    pub const fn bridge(&mut self, is_off: bool) {
-        self.fingertip.bridge(is_off);
-    }
-
-    pub fn light(&self) -> bool {
-        self.fingertip.light()
-    }
-
-    pub fn feedback(&mut self) -> Duty {
-        self.fingertip.feedback()
-    }
-
-    /// The start was a reset, not a power-up: no consent follows from it. Call it before the first tick.
-    pub const fn was_reset(&mut self) {
-        self.fingertip.was_reset();
     }
 
     pub fn tick(&mut self, frame: &Frame) -> MotorDrive {
@@ -142,7 +109,7 @@ impl Device {
     /// `Taken`, to be sent before the answer of a command while frames are streamed.
     pub fn taken(&self, received: &Received<Down>) -> Option<Up> {
         let Received { sequence: of, message: command } = *received;
-        self.stream.is_raw().then_some(Up::Taken { before: self.stream.next(), of, command })
+        self.stream.raw.then_some(Up::Taken { before: self.stream.next(), of, command })
     }
 
     pub fn carry_out(&mut self, received: &Received<Down>) -> Result<(), Refusal> {
@@ -194,8 +161,8 @@ impl Device {
 
     pub fn has_message(&self) -> bool {
         self.fingertip.has_slow()
-            || self.stream.has_raw()
-            || self.stream.wants_senses()
+            || self.stream.raw_is_ready
+            || self.stream.senses_are_due
             || self.fingertip.has_event()
     }
 
@@ -207,11 +174,10 @@ impl Device {
             self.session.stir(slow.samples_sum ^ slow.frame);
             return Some(Up::Slow(slow));
         }
-        if self.stream.has_raw() {
+        if self.stream.raw_is_ready {
             return self.stream.take_raw().map(Up::Raw);
         }
-        if self.stream.wants_senses() {
-            self.stream.gave_senses();
+        if core::mem::take(&mut self.stream.senses_are_due) {
             return Some(Up::Senses(self.senses()));
         }
         if self.fingertip.has_event() {

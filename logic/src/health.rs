@@ -38,10 +38,11 @@ pub enum Change {
 pub struct SensorHealth {
     /// Previous 14-bit sample; 0 at start.
     last: u16,
-    same: u32,
+    /// Readings in a row that equal the one before them.
+    pub same: u32,
     bad: u32,
     good: u32,
-    lost: Option<Reason>,
+    pub lost: Option<Reason>,
 }
 
 impl SensorHealth {
@@ -116,18 +117,6 @@ impl SensorHealth {
         let is_new = self.lost.is_none();
         self.lost.get_or_insert(reason);
         is_new.then_some(Change::Lost(reason))
-    }
-
-    pub const fn same(&self) -> u32 {
-        self.same
-    }
-
-    pub const fn lost(&self) -> Option<Reason> {
-        self.lost
-    }
-
-    pub const fn is_lost(&self) -> bool {
-        self.lost.is_some()
     }
 }
 

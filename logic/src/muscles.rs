@@ -68,7 +68,7 @@ impl Muscles {
         let uv = reading.ok().map(uv_of_sample);
         // Above its range there is no number, but a motion that has begun goes on.
         self.read(n, uv.or_else(|| (sample > LIMITS.high).then(|| uv_of_sample(sample))), journal);
-        let differs = self.health[n].same() == 0;
+        let differs = self.health[n].same == 0;
         self.confirmed[n] = self.emg.is_raised(n) && (self.confirmed[n] || (was_raised && differs));
         uv
     }
@@ -92,7 +92,7 @@ impl Muscles {
         if n == 1 && self.lesson.is_some() {
             self.learn(journal);
         }
-        let lost = self.health[n].lost().or_else(|| reason_of(self.emg.quality(n)));
+        let lost = self.health[n].lost.or_else(|| reason_of(self.emg.quality(n)));
         if lost != self.lost[n] {
             self.tell(n, lost, journal);
         }

@@ -7,7 +7,8 @@ use tenax_hal_shim::frame::Frame;
 pub struct LastSamples {
     pvdf: [u16; PVDF_COUNT],
     switch_a: [u16; SWITCH_INPUTS as usize],
-    switch_b: [u16; SWITCH_INPUTS as usize],
+    /// 14-bit samples; 0 of an input without a sample yet.
+    pub switch_b: [u16; SWITCH_INPUTS as usize],
 }
 
 impl LastSamples {
@@ -19,10 +20,6 @@ impl LastSamples {
         self.pvdf = frame.pvdf;
         self.switch_a[select] = frame.switch_a;
         self.switch_b[select] = frame.switch_b;
-    }
-
-    pub const fn switch_b(&self) -> &[u16; SWITCH_INPUTS as usize] {
-        &self.switch_b
     }
 
     /// Last 14-bit samples in the order of [`CHANNELS`]; 0 for a channel without a sample yet.

@@ -138,11 +138,11 @@ impl Senses {
             vibration,
             envelopes: self.envelopes(),
             vibration_known: self.hears(),
-            strain: self.gauges(),
+            strain: &self.gauges,
             forces: self.forces.as_ref(),
             forces_are_new: self.forces_are_new,
             taxels: self.taxels(),
-            head: self.head(),
+            head: &self.head,
             unloaded: self.unloaded,
             grasp: matches!(self.grip, Grip::Holds(_)),
             noisy: vibration.impact || duty_permille >= config.hebbian.loud_duty_permille,
@@ -194,16 +194,8 @@ impl Senses {
         &mut self.muscles
     }
 
-    pub const fn gauges(&self) -> &Gauges {
-        &self.gauges
-    }
-
     pub const fn taxels(&self) -> &Reading {
         self.taxels.reading()
-    }
-
-    pub const fn head(&self) -> &Head {
-        &self.head
     }
 
     pub const fn hears(&self) -> bool {
@@ -222,7 +214,7 @@ impl Senses {
 
     const fn feels(&self) -> bool {
         self.frames_seen >= WARM_UP_FRAMES
-            && (self.films_usable || self.forces.is_some() || self.head.is_usable())
+            && (self.films_usable || self.forces.is_some() || self.head.is_usable)
     }
 
     fn weigh(&mut self, config: &Config) {
@@ -270,7 +262,7 @@ impl Senses {
         if !self.muscles().has_window() {
             self.blame(config, journal);
         }
-        self.select_lines.look(samples.switch_b());
+        self.select_lines.look(&samples.switch_b);
         self.films.slow(|film, change| report(journal, PVDF + film, Some(change)));
         let forces = self.forces.filter(|_| matches!(self.grip, Grip::Holds(_)));
         self.detector.slow(&Hand { forces, wearer: self.gate.is_active(), striking: self.striking });
@@ -373,7 +365,7 @@ impl Senses {
             return;
         }
         let now = [
-            (Capability::Vibration, !self.films_usable && !self.head.is_usable()),
+            (Capability::Vibration, !self.films_usable && !self.head.is_usable),
             (Capability::Force, self.forces.is_none()),
             (Capability::WearerIntent, !self.gate.is_known()),
         ];

@@ -13,15 +13,15 @@ pub const SENSES_SLOT: u8 = 2;
 #[derive(Clone, Debug, Default)]
 pub struct Stream {
     next: u32,
-    raw: bool,
+    pub raw: bool,
     senses: bool,
     left: u32,
     gathered: Raw,
     /// Sent in the tick after its last frame: two long messages do not fit in one.
     whole: Raw,
     is_whole: bool,
-    raw_is_ready: bool,
-    senses_are_due: bool,
+    pub raw_is_ready: bool,
+    pub senses_are_due: bool,
     is_torn: bool,
 }
 
@@ -67,24 +67,8 @@ impl Stream {
         self.next
     }
 
-    pub const fn is_raw(&self) -> bool {
-        self.raw
-    }
-
-    pub const fn has_raw(&self) -> bool {
-        self.raw_is_ready
-    }
-
     pub fn take_raw(&mut self) -> Option<Raw> {
         core::mem::take(&mut self.raw_is_ready).then_some(self.whole)
-    }
-
-    pub const fn wants_senses(&self) -> bool {
-        self.senses_are_due
-    }
-
-    pub const fn gave_senses(&mut self) {
-        self.senses_are_due = false;
     }
 }
 
@@ -109,7 +93,7 @@ mod tests {
         assert_eq!(firsts(&mut stream, 7..26), [10, 15, 20]);
         stream.ask(false, true, 1);
         assert_eq!(firsts(&mut stream, 26..53), []);
-        assert!(stream.wants_senses(), "slot 2");
+        assert!(stream.senses_are_due, "slot 2");
     }
 
     #[test]

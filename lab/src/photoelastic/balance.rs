@@ -68,7 +68,7 @@ pub fn weigh(making: &Making, day: &Day, seeds: Seeds) -> Calibration {
             sum += f64::from(bench.frame(&mut pin_v));
             // Each weight is put on with a jerk.
             if frame > frames / 2 {
-                loudest = loudest.max(bench.head.split().envelope());
+                loudest = loudest.max(bench.head.split.envelope);
             }
         }
         sum / frames as f64 * 16.0

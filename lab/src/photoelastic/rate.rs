@@ -106,8 +106,8 @@ impl Rig {
             }
             let reads = &self.bench.head;
             said += usize::from(reads.vibrates());
-            amplitudes.push(f64::from(reads.split().envelope()) / f64::from(1 << Q) * 3_300.0 / 16_380.0);
-            periods.push(f64::from(reads.split().period_q4()));
+            amplitudes.push(f64::from(reads.split.envelope) / f64::from(1 << Q) * 3_300.0 / 16_380.0);
+            periods.push(f64::from(reads.split.period_q4()));
             swings.extend(reads.swing(&self.bench.config));
         }
         let period_q4 = middle(periods).unwrap_or(f64::NAN);

@@ -7,7 +7,7 @@ use tenax_hal_shim::detector::{DetectorHealth, DetectorId, Direction};
 use tenax_hal_shim::schedule::ARRAY_SHARES;
 
 use super::network::Mlp;
-use super::preprocess::{Features, Preprocessor, PreprocessorConfig};
+use super::preprocess::{Preprocessor, PreprocessorConfig};
 use super::{ARRAY_READ, COVARIANCE_WINDOW, HIDDEN, Reading, ShippedDetector};
 use crate::detectors::{Description, Detector, Said, Sensed};
 
@@ -118,10 +118,6 @@ impl<'m, const N: usize> ArrayDetector<'m, N> {
 
     pub fn logit(&self) -> Option<i32> {
         self.logit
-    }
-
-    pub fn features(&self) -> &Features {
-        self.preprocessor.features()
     }
 
     pub fn verdict(&self) -> ArrayVerdict {

@@ -136,8 +136,4 @@ impl<const N: usize> Preprocessor<N> {
     pub fn covariance(&self) -> &SlidingCovariance<N> {
         &self.covariance
     }
-
-    pub fn spectrum(&self) -> &SlidingSpectrum<SPECTRUM_WINDOW> {
-        &self.spectrum
-    }
 }

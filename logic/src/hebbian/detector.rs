@@ -134,7 +134,7 @@ impl Detector for HebbianDetector {
             _ => Direction::Unknown,
         };
         let health =
-            if self.pvdf_part.is_quiet_known() { DetectorHealth::Working } else { DetectorHealth::Starting };
+            if self.pvdf_part.quiet_known { DetectorHealth::Working } else { DetectorHealth::Starting };
         Description {
             confidence_permille: confidence(-raw, config.slip_permille.into()),
             direction,
@@ -147,7 +147,7 @@ impl Detector for HebbianDetector {
 impl HebbianDetector {
     fn tick(&mut self, config: &HebbianConfig, sensed: &Sensed<'_>) {
         let learns = self.lesson.is_ok();
-        if self.pvdf_part.is_outdated() && !learns {
+        if self.pvdf_part.stale && !learns {
             self.know_gains();
         }
         let mut by_films = self.pvdf_part.process(sensed);
@@ -166,7 +166,7 @@ impl HebbianDetector {
         self.judge(config, sensed, by_films);
         self.noise.add(by_films);
         if sensed.slot == CYCLE_ENDS {
-            let quiet = self.pvdf_part.is_quiet_known() && self.since_loud_frames >= config.loud_frames;
+            let quiet = self.pvdf_part.quiet_known && self.since_loud_frames >= config.loud_frames;
             self.noise.end_cycle(sensed.unloaded && quiet);
         }
         self.learn(config, sensed, learns);
@@ -184,7 +184,7 @@ impl HebbianDetector {
 
     #[inline(never)]
     fn feel_films(&mut self) {
-        self.normaliser.renew(&NORMALISER, 0, self.pvdf_part.heard(), &mut self.activations);
+        self.normaliser.renew(&NORMALISER, 0, &self.pvdf_part.heard, &mut self.activations);
     }
 
     #[inline(never)]
@@ -226,7 +226,7 @@ impl HebbianDetector {
         self.network = FingertipNetwork::default();
         self.by_gauges = [0; NETWORK_OUTPUTS];
         self.weights_changed = true;
-        self.pvdf_part.outdate();
+        self.pvdf_part.stale = true;
         self.shear = Ahead::default();
         self.noise = Noise::default();
         self.balance = Balance::default();
@@ -256,7 +256,7 @@ impl HebbianDetector {
 
     pub fn state(&self, frame: u32) -> NetworkState {
         let mut activations = self.activations;
-        self.normaliser.renew(&NORMALISER, 0, self.pvdf_part.heard(), &mut activations);
+        self.normaliser.renew(&NORMALISER, 0, &self.pvdf_part.heard, &mut activations);
         NetworkState {
             frame,
             weights: self.network.weights().map(|row| row.map(|weight| weight.into_bits())),
@@ -280,7 +280,7 @@ impl HebbianDetector {
         self.shear.restore(slips_at);
         self.noise = Noise::default();
         self.weights_changed = true;
-        self.pvdf_part.outdate();
+        self.pvdf_part.stale = true;
         true
     }
 
@@ -291,7 +291,7 @@ impl HebbianDetector {
         let says = sensed.grasp
             && self.since_loud_frames >= config.loud_frames
             && sum * 1_000 <= -threshold * ONE
-            && sum <= -self.noise.floor() / if self.films_say { 2 } else { 1 };
+            && sum <= -self.noise.floor / if self.films_say { 2 } else { 1 };
         if !says {
             self.said_frames = 0;
             self.films_say = false;
@@ -316,7 +316,7 @@ impl HebbianDetector {
         let disturbed = sensed.vibration.impact || sensed.moves || !sensed.vibration_known;
         self.lesson = self.teacher.lesson(&config.teacher, Situation { grasp: sensed.grasp, disturbed });
         if let Ok(codes) = self.lesson {
-            self.pvdf_part.outdate();
+            self.pvdf_part.stale = true;
             if sensed.slot == SHEAR_IS_JUDGED && codes[0] == Code::Minus {
                 self.shear.learn();
             }
@@ -331,7 +331,7 @@ impl HebbianDetector {
             } else {
                 let mut readings = [0; RECEPTORS];
                 let (films, gauges) = readings.split_at_mut(PVDF_COUNT);
-                films.copy_from_slice(self.pvdf_part.heard());
+                films.copy_from_slice(&self.pvdf_part.heard);
                 gauges.copy_from_slice(&sensed.strain.loads());
                 self.normaliser.observe(&NORMALISER, &readings);
             }

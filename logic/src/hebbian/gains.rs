@@ -14,7 +14,7 @@ pub struct Gain {
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Gains<const N: usize>([Gain; N]);
+pub struct Gains<const N: usize>(pub [Gain; N]);
 
 impl<const N: usize> Default for Gains<N> {
     fn default() -> Self {
@@ -33,10 +33,6 @@ impl<const N: usize> Gains<N> {
             *gain = Gain { largest, shift: reciprocal.shift.saturating_sub(1), factor: factor as i32 };
         }
         gains
-    }
-
-    pub const fn each(&self) -> &[Gain; N] {
-        &self.0
     }
 }
 
@@ -78,7 +74,7 @@ mod tests {
             normaliser.renew(&CONFIG, 0, &readings, &mut activations);
             let network = Network::<4, 1>::from_weights(&weights);
             let gains = Gains::<4>::of(&network.weights()[0], &maxima);
-            let parts = gains.each().iter().zip(readings).map(|(gain, reading)| gain.part(reading));
+            let parts = gains.0.iter().zip(readings).map(|(gain, reading)| gain.part(reading));
             for (part, exact) in parts.zip(network.parts(0, 0..4, &activations)) {
                 assert!((part - exact).abs() <= 16, "{part} {exact} of {readings:?} {maxima:?} {weights:?}");
             }

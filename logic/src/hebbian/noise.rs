@@ -10,7 +10,8 @@ pub(super) struct Noise {
     /// Sum of this slow frame, units of an output; positive if the films' part is below 0.
     sum: i64,
     nothing: Option<i64>,
-    floor: i64,
+    /// Units of an output; 0 while it is not known.
+    pub floor: i64,
 }
 
 impl Noise {
@@ -28,11 +29,6 @@ impl Noise {
             self.floor = FLOOR * nothing / i64::from(FRAMES_PER_SLOW_FRAME);
         }
     }
-
-    /// Units of an output; quiet ticks stay below. 0 while it is not known.
-    pub(super) const fn floor(&self) -> i64 {
-        self.floor
-    }
 }
 
 #[cfg(test)]
@@ -47,7 +43,7 @@ mod tests {
                 noise.add(-of_a_tick);
             }
             noise.end_cycle(is_nothing);
-            noise.floor()
+            noise.floor
         };
         assert_eq!(cycle(1_000, false), 0);
         assert_eq!(cycle(100, true), 600);

@@ -16,11 +16,11 @@ const QUIET_STEP: i32 = 1;
 #[derive(Clone, Debug, Default)]
 pub(super) struct PvdfPart {
     quiet: [i32; PVDF_COUNT],
-    quiet_known: bool,
+    pub quiet_known: bool,
     /// Envelopes above their quiet levels, 1/16 of a sample.
-    heard: [i32; PVDF_COUNT],
+    pub heard: [i32; PVDF_COUNT],
     gains: Gains<PVDF_COUNT>,
-    stale: bool,
+    pub stale: bool,
 }
 
 impl PvdfPart {
@@ -42,25 +42,9 @@ impl PvdfPart {
         self.parts().map(i64::from).sum()
     }
 
-    pub(super) const fn heard(&self) -> &[i32; PVDF_COUNT] {
-        &self.heard
-    }
-
     #[inline]
     pub(super) fn parts(&self) -> impl Iterator<Item = i32> {
-        self.gains.each().iter().zip(&self.heard).map(|(gain, &heard)| gain.part(heard))
-    }
-
-    pub(super) const fn is_quiet_known(&self) -> bool {
-        self.quiet_known
-    }
-
-    pub(super) const fn outdate(&mut self) {
-        self.stale = true;
-    }
-
-    pub(super) const fn is_outdated(&self) -> bool {
-        self.stale
+        self.gains.0.iter().zip(&self.heard).map(|(gain, &heard)| gain.part(heard))
     }
 
     pub(super) fn renew(&mut self, weights: &[Weight], maxima: &[u32]) {

@@ -54,7 +54,7 @@ impl PhotoelasticDetector {
         if sensed.forces_are_new {
             self.level = head.level();
             self.rate_um_s = if slips { head.rate_um_s(config, &ALUMINIUM) } else { 0 };
-            self.health = if head.is_usable() { DetectorHealth::Working } else { DetectorHealth::Blind };
+            self.health = if head.is_usable { DetectorHealth::Working } else { DetectorHealth::Blind };
         }
         Said::slip(slips)
     }

@@ -33,8 +33,8 @@ pub const ALUMINIUM: RateFit = RateFit { constant: -16_736, amplitude: 896, freq
 #[derive(Clone, Debug, Default)]
 pub struct Head {
     health: SensorHealth,
-    is_usable: bool,
-    split: Split,
+    pub is_usable: bool,
+    pub split: Split,
     presence: Presence,
     tracker: Tracker,
 }
@@ -64,20 +64,12 @@ impl Head {
         self.tracker.step(&config.curve, level_q4, hints);
     }
 
-    pub const fn is_usable(&self) -> bool {
-        self.is_usable
-    }
-
     pub const fn vibrates(&self) -> bool {
-        self.presence.is_slip()
+        self.presence.slip
     }
 
     pub const fn level(&self) -> i32 {
-        self.split.envelope() >> Q
-    }
-
-    pub const fn split(&self) -> &Split {
-        &self.split
+        self.split.envelope >> Q
     }
 
     pub const fn track(&self) -> Track {
@@ -93,7 +85,7 @@ impl Head {
         let period_q4 = self.split.period_q4();
         let force_mn = self.force()?.mn();
         let span = i64::from(config.curve.bright_q4 - config.curve.dark_q4).max(1);
-        let part = i64::from(self.split.envelope()) * 16 * i64::from(ONE) / (span << Q);
+        let part = i64::from(self.split.envelope) * 16 * i64::from(ONE) / (span << Q);
         (period_q4 > 0).then_some((part.min(i64::from(ONE)) as i32, period_q4, force_mn))
     }
 

@@ -10,7 +10,7 @@ const SWINGS: u16 = 3;
 pub struct Presence {
     large: u32,
     before: u16,
-    slip: bool,
+    pub slip: bool,
 }
 
 impl Presence {
@@ -18,18 +18,14 @@ impl Presence {
     #[inline]
     pub fn process(&mut self, on: u16, split: &Split) {
         let on = (i32::from(on) << Q) >> u32::from(self.slip);
-        let is_large = split.envelope() > on;
+        let is_large = split.envelope > on;
         if !is_large {
-            (self.large, self.before, self.slip) = (0, split.swings(), false);
+            (self.large, self.before, self.slip) = (0, split.swings, false);
             return;
         }
         self.large = self.large.saturating_add(1);
-        self.before = self.before.min(split.swings());
-        self.slip |= self.large >= LASTS && split.swings() - self.before >= SWINGS;
-    }
-
-    pub const fn is_slip(&self) -> bool {
-        self.slip
+        self.before = self.before.min(split.swings);
+        self.slip |= self.large >= LASTS && split.swings - self.before >= SWINGS;
     }
 }
 
@@ -45,7 +41,7 @@ mod tests {
             let tone = size * (-t / decay).exp() * (TAU * hz * t / 2e3).sin();
             split.process((6_000.0 + tone).round() as u16);
             presence.process(10, &split);
-            presence.is_slip()
+            presence.slip
         })
     }
 
@@ -69,7 +65,7 @@ mod tests {
                 let ramp = ((f64::from(n) - 1_000.0) / frames).clamp(0.0, 1.0);
                 split.process((2_000.0 + 8_000.0 * ramp + noise) as u16);
                 presence.process(10, &split);
-                assert!(!presence.is_slip(), "{frames}: {n}");
+                assert!(!presence.slip, "{frames}: {n}");
             }
         }
     }

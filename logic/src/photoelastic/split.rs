@@ -25,13 +25,14 @@ pub struct Split {
     low: i32,
     envelope_state: i32,
     ac: i32,
-    envelope: i32,
+    /// Mean size of the ac part, Q14 samples.
+    pub envelope: i32,
     sum: u32,
     count: u32,
     is_above: bool,
     since: u16,
     period_q4: u16,
-    swings: u16,
+    pub swings: u16,
 }
 
 impl Split {
@@ -88,15 +89,6 @@ impl Split {
         let (sum, count) = (core::mem::take(&mut self.sum), core::mem::take(&mut self.count));
         let whole = (1..=u32::from(FRAMES_PER_SLOW_FRAME)).contains(&count);
         whole.then(|| ((sum << 4) / count) as i32)
-    }
-
-    /// Mean size of the ac part, Q14 samples.
-    pub const fn envelope(&self) -> i32 {
-        self.envelope
-    }
-
-    pub const fn swings(&self) -> u16 {
-        self.swings
     }
 
     pub const fn period_q4(&self) -> u16 {
@@ -165,7 +157,7 @@ mod tests {
                     split.process(sample);
                     let (ac, envelope) = float.process(sample);
                     let lsb = |fixed: i32| f64::from(fixed) / f64::from(1 << Q);
-                    let error = (lsb(split.ac) - ac).abs().max((lsb(split.envelope()) - envelope).abs());
+                    let error = (lsb(split.ac) - ac).abs().max((lsb(split.envelope) - envelope).abs());
                     worst = worst.max(error);
                     assert!(error < 2.0, "{name}, cycle {n}: {error}");
                 }
@@ -186,13 +178,13 @@ mod tests {
                 split.process((8_190.0 + 300.0 * (TAU * hz * f64::from(n) / 2e3).sin()) as u16);
             }
             let measured = 16.0 * 2e3 / f64::from(split.period_q4());
-            assert!((measured / hz - 1.0).abs() < 0.05 && split.swings() > 10, "{measured} Hz for {hz} Hz");
+            assert!((measured / hz - 1.0).abs() < 0.05 && split.swings > 10, "{measured} Hz for {hz} Hz");
         }
         let mut split = Split::default();
         for n in 0..2_000 {
             split.process(1_000 + 4 * n);
         }
-        assert!(split.envelope() < 2 << Q, "{}", split.envelope() >> Q);
+        assert!(split.envelope < 2 << Q, "{}", split.envelope >> Q);
         assert_eq!(split.period_q4(), 0);
     }
 

@@ -8,17 +8,14 @@ const WEIGHT: u32 = 8;
 
 #[derive(Clone, Debug, Default)]
 pub struct ChannelMask {
-    masked: u16,
+    /// A bit for each film.
+    pub masked: u16,
     suspect: u8,
     alone: u32,
     quiet: [u32; PVDF_COUNT],
 }
 
 impl ChannelMask {
-    pub const fn masked(&self) -> u16 {
-        self.masked
-    }
-
     pub const fn is_masked(&self, channel: usize) -> bool {
         self.masked >> channel & 1 != 0
     }
@@ -65,7 +62,7 @@ mod tests {
 
     fn after(mask: &mut ChannelMask, frames: u32, envelopes: [i32; PVDF_COUNT]) -> u16 {
         (0..frames).for_each(|_| mask.count_loud(&envelopes, ON));
-        mask.masked()
+        mask.masked
     }
 
     #[test]

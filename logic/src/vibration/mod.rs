@@ -73,7 +73,7 @@ impl VibrationDetector {
         trusts: Option<&[Trust; PVDF_COUNT]>,
     ) -> Vibration {
         let mains = self.mains.turn();
-        if self.mask.masked() != 0 {
+        if self.mask.masked != 0 {
             let trusts = self.with_masks(config, trusts);
             let loudest = self.process_each(samples, &trusts, mains);
             return self.judge(config, loudest);
@@ -187,7 +187,7 @@ impl VibrationDetector {
             s1: self.s1,
             impact: rings && self.ringing_frames < config.impact_frames,
             slides: self.slides,
-            masked: self.mask.masked(),
+            masked: self.mask.masked,
         }
     }
 

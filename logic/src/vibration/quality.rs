@@ -75,7 +75,7 @@ impl PvdfQuality {
         for (n, (((health, last), &sample), trust)) in films.enumerate() {
             let last = core::mem::replace(last, sample);
             let in_range = (LIMITS.low..=LIMITS.high).contains(&sample);
-            if in_range && sample != last && !health.is_lost() {
+            if in_range && sample != last && !health.lost.is_some() {
                 health.was_plain(sample);
                 continue;
             }
@@ -88,11 +88,11 @@ impl PvdfQuality {
             }
             *trust = match reading {
                 Err(_) => Trust::None,
-                Ok(_) if health.same() >= DOUBTED_AFTER => Trust::Doubtful,
+                Ok(_) if health.same >= DOUBTED_AFTER => Trust::Doubtful,
                 Ok(_) => Trust::Full,
             };
             all_believed &= *trust == Trust::Full;
-            self.any_lost |= health.is_lost();
+            self.any_lost |= health.lost.is_some();
         }
         (!all_believed).then_some(trusts)
     }
@@ -141,7 +141,7 @@ mod tests {
                 changes.extend(change.map(|change| (n, change)));
                 match reading {
                     Err(_) => Trust::None,
-                    Ok(_) if self.0[n].same() >= DOUBTED_AFTER => Trust::Doubtful,
+                    Ok(_) if self.0[n].same >= DOUBTED_AFTER => Trust::Doubtful,
                     Ok(_) => Trust::Full,
                 }
             });
