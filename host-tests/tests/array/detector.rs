@@ -1,5 +1,3 @@
-//! Verdicts of the array detector, with and without readings.
-
 use proptest::prelude::*;
 use tenax_logic::array::{ArrayDetector, ArrayVerdict, Judgement, Model, Reading, shipped};
 

@@ -1,5 +1,3 @@
-//! Features of the array against the oracle.
-
 use proptest::prelude::*;
 use tenax_hal_shim::channel::SAMPLE_MAX;
 use tenax_logic::array::covariance::SlidingCovariance;
@@ -84,37 +82,6 @@ proptest! {
             }
             let size = compressed(exact as f64, config.structure_knee * width);
             prop_assert!((f64::from(*feature) - size).abs() <= 1.01, "{feature} {exact}");
-        }
-    }
-
-    /// To its neighbours an element without readings holds still, and then goes on from where it was.
-    #[test]
-    fn an_element_without_readings_adds_nothing_to_the_spectrum(
-        frames in prop::collection::vec(alive(), 100..140),
-        dead in 0..ELEMENTS,
-        dies_at in 45..60usize,
-        back_at in 61..95usize,
-    ) {
-        let mut with_gap: Preprocessor = Preprocessor::new(PreprocessorConfig::DEFAULT);
-        let mut held: Preprocessor = Preprocessor::new(PreprocessorConfig::DEFAULT);
-        let held_at = frames[dies_at - 1][dead];
-        for (n, frame) in frames.iter().enumerate() {
-            let (mut reading, mut still) = (some(frame), *frame);
-            if (dies_at..back_at).contains(&n) {
-                reading[dead] = None;
-                still[dead] = held_at;
-            } else if n >= back_at {
-                // A shifted sample below zero cannot be given.
-                let shifted = i32::from(frame[dead]) + i32::from(held_at) - i32::from(frames[back_at][dead]);
-                let Ok(shifted) = u16::try_from(shifted) else { break };
-                still[dead] = shifted;
-            }
-            let [found, expected] = [with_gap.push(&reading), held.push(&some(&still))].map(|f| f.copied());
-            if let (Some(found), Some(expected)) = (found, expected) {
-                // Bin 0 alone knows what the element missed.
-                let bins = COVARIANCES + 1..PAPER_FEATURES;
-                prop_assert_eq!(&found[bins.clone()], &expected[bins]);
-            }
         }
     }
 

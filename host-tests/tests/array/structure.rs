@@ -1,5 +1,3 @@
-//! Structure functions against the oracle.
-
 use proptest::prelude::*;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
@@ -56,7 +54,6 @@ proptest! {
     }
 }
 
-/// Elements that tremble independently by up to `size` samples.
 fn trembling(random: &mut ChaCha8Rng, frames: usize, size: i32) -> Vec<Reading> {
     let mut frame = || std::array::from_fn(|_| Some((4_000 + random.random_range(-size..=size)) as u16));
     (0..frames).map(|_| frame()).collect()
