@@ -18,7 +18,6 @@ const MISSES: u8 = 3;
 const HZ: u32 = 3 * SLOW_HZ;
 /// Equal readings of an active muscle in a row that no muscle gives: 50 ms.
 const FROZEN_AFTER: u32 = HZ / 20;
-
 static LIMITS: Limits = Limits { lost_after: HZ / 20 + 1, ..Limits::of(&CHANNELS[MYO_FLEXOR], HZ) };
 
 #[derive(Clone, Debug)]

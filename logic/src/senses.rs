@@ -44,7 +44,6 @@ const OPEN_FRAMES: u32 = frames(600);
 /// Slow frames in which a surely open hand reads a load before that is reported: 4 s.
 const DOUBTED_AFTER: u16 = 4 * SLOW_HZ as u16;
 const PRESSED_UV: i32 = 100_000;
-
 static FSR_LIMITS: Limits = Limits::of(&CHANNELS[FSR], SLOW_HZ);
 
 #[derive(Clone, Debug, Default)]

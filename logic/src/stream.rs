@@ -5,9 +5,7 @@ use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::wire::{FRAMES_PER_RAW, Raw};
 
 const _: () = assert!((FRAMES_PER_SLOW_FRAME as usize).is_multiple_of(FRAMES_PER_RAW));
-
 const EVER: u32 = u32::MAX;
-
 pub const SENSES_SLOT: u8 = 2;
 
 #[derive(Clone, Debug, Default)]

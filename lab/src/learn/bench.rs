@@ -124,8 +124,8 @@ impl Bench {
         let more = control.change(films, more);
         let changed = FingertipNetwork::from_weights(&weights);
         let mut bytes = [0; hebbian::SNAPSHOT_LENGTH];
-        let kept = snapshot::save(&normaliser, &changed, more, &mut bytes);
-        let kept = kept.context("a snapshot of another length")?;
+        let kept = snapshot::Contents::of(&normaliser, &changed, more);
+        let kept = kept.write(&mut bytes).context("a snapshot of another length")?;
         let mut other = self.clone();
         other.fingertip.restore(words::Kept::Network, kept);
         Ok(other)

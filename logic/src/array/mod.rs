@@ -29,7 +29,6 @@ pub use preprocess::{Features, Preprocessor, PreprocessorConfig};
 
 pub const ARRAY_READ: u8 = slot_of(Job::ArrayBegins);
 pub const MLP_DECIDES: u8 = slot_of(Job::MlpDecides);
-
 /// Two pads of five (Bamshad 2023, section 2.1).
 pub const ELEMENTS: usize = ARRAY_COUNT;
 pub const COVARIANCES: usize = ELEMENTS * (ELEMENTS + 1) / 2;
@@ -43,10 +42,8 @@ pub const HIDDEN: [usize; 2] = [32, 16];
 pub const COVARIANCE_WINDOW: usize = 10;
 /// Samples in the spectrum (Bamshad 2023, section 4.3).
 pub const SPECTRUM_WINDOW: usize = 40;
-
 /// 14-bit samples; None for an element without a valid one.
 pub type Reading = [Option<u16>; ELEMENTS];
-
 pub type ShippedDetector = ArrayDetector<'static>;
 
 impl Default for ShippedDetector {

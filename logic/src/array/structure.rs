@@ -23,7 +23,6 @@ const QUIET_SHIFT: u32 = 8;
 /// Readings until all windows of the four shorter lags are full.
 pub const READY_AFTER: usize = FRAMES + LAGS[SHORT - 1];
 pub const FULL_AFTER: usize = FRAMES + LAGS[LAGS.len() - 1];
-
 /// Samples: 1 N of one element within 0.1 s. Sixteen sums of ten squares of it, times ten, fit in a `u32`.
 pub const CHANGE_MAX: i32 = 1 << 10;
 const _: () = assert!(

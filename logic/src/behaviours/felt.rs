@@ -7,12 +7,10 @@ use crate::grip::Grip;
 
 /// 200 mV/N (`docs/hardware.md`): a sample is about 1 mN.
 const TAXEL_SAMPLES_PER_N: i32 = 993;
-
 /// Scores of a cell's normal force, mN: noise, sufficient, medium, large (FingerVision 2017, section II-A).
 const SCORES: [(i32, u16); 3] = [(300, 5), (100, 3), (30, 1)];
 /// Change of a cell that counts, mN, or a quarter of its first reading.
 const CHANGE_MN: i32 = 60;
-
 /// Shear of all markers together that is a pull, mN: three times its noise.
 const PULL_MN: i32 = 250;
 

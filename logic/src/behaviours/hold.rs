@@ -11,7 +11,6 @@ const ANSWER_FRAMES_MAX: u32 = frames(500);
 const FASTER_FRAMES: u32 = frames(60);
 const FASTEST: u32 = 3;
 const STILL_FRAMES: u32 = frames(200);
-
 const STICKS: [[i32; 2]; 2] = [[1, 10], [1, 3]];
 const SLIDES: [i32; 2] = [1, 2];
 const SUMS_RATE: u32 = 2;

@@ -4,7 +4,6 @@
 pub const LEVEL_Q: u32 = 10;
 /// Envelopes below this count as it, uV: their logarithm would swing with the noise of a pin.
 pub const FLOOR_UV: i32 = 8_000;
-
 /// Four times log2(1 + m) - m half way between two octaves, Q15: a parabola within 0.01.
 const BEND_Q15: u32 = 11_200;
 

@@ -13,7 +13,6 @@ pub mod model;
 pub mod proof;
 pub mod settings;
 pub mod trust;
-
 #[cfg(test)]
 mod tests;
 
@@ -239,7 +238,7 @@ impl Emg {
         self.channels[channel.min(1)].trust.window()
     }
 
-    pub const fn hear(&mut self, channel: usize, mains: Mains) {
+    pub fn hear(&mut self, channel: usize, mains: Mains) {
         let channel = if channel == 0 { 0 } else { 1 };
         self.channels[channel].trust.hear(mains);
     }

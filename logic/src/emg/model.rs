@@ -20,7 +20,6 @@ const LEAST_TURN: i32 = octaves(1_200);
 pub const LEAST_SEPARATION_PERMILLE: i32 = 2_200;
 /// Largest standard deviation of rest: 41 %.
 const NOISIEST_REST: i32 = octaves(500);
-
 /// Levels of both electrodes, [`level_of`] of uV, flexor first.
 pub type Point = [i32; 2];
 

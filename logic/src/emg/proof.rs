@@ -33,7 +33,6 @@ const OVER_FRAMES: u16 = 40;
 /// Each unproven opening makes the next harder to believe, three times at most; 10 s of rest take one back.
 const MOST_WARY: u8 = 3;
 const WARY_FRAMES: u16 = 800;
-
 /// Rise and fall of a swing, Q10 octaves; swings that the other electrode does not hear, within 3 s.
 const SWING: i32 = 1_024;
 const LONE_SWINGS: u8 = 2;

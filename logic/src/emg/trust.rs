@@ -1,6 +1,8 @@
 //! Quality of a myosensor's envelope, and the turns that only a muscle makes. Each fault has a duration that
 //! no sound recording reaches (`docs/emg.md`). A doubted electrode vetoes nothing of the other one.
 
+use heapless::Vec;
+
 use super::mains::{Mains, UNIT_UV, WINDOW};
 
 /// Top of an envelope's range, uV above the live zero: 3.15 V at the pin.
@@ -65,7 +67,7 @@ impl core::fmt::Display for Quality {
     }
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Trust {
     quality: Quality,
     good: u16,
@@ -85,37 +87,9 @@ pub struct Trust {
     /// Proofs of this contraction, two at most, and slow frames since the last.
     proofs: u8,
     since_proof: u16,
-    window: [i16; WINDOW],
-    filled: u8,
+    window: Vec<i16, WINDOW>,
     kept: bool,
     mains: bool,
-}
-
-impl Default for Trust {
-    fn default() -> Self {
-        Self {
-            quality: Quality::Good,
-            good: 0,
-            missing: 0,
-            last_uv: 0,
-            past_uv: [0; 2 * LAG],
-            place: 0,
-            anchor_uv: 0,
-            flat: 0,
-            hum_uv: 0,
-            active_for: 0,
-            foot_uv: 0,
-            crest_uv: 0,
-            climbing: 0,
-            at_top: 0,
-            proofs: 0,
-            since_proof: 0,
-            window: [0; WINDOW],
-            filled: 0,
-            kept: false,
-            mains: false,
-        }
-    }
 }
 
 impl Trust {
@@ -130,10 +104,8 @@ impl Trust {
             return self.last_uv();
         };
         (self.missing, self.last_uv) = (0, uv);
-        if !self.kept && usize::from(self.filled) < WINDOW {
-            self.window[usize::from(self.filled)] = (uv / UNIT_UV).clamp(-32_768, 32_767) as i16;
-            self.filled += 1;
-            self.kept = true;
+        if !self.kept {
+            self.kept = self.window.push((uv / UNIT_UV).clamp(-32_768, 32_767) as i16).is_ok();
         }
         Some(uv)
     }
@@ -277,12 +249,12 @@ impl Trust {
     }
 
     pub fn window(&self) -> Option<&[i16; WINDOW]> {
-        (usize::from(self.filled) == WINDOW).then_some(&self.window)
+        self.window.as_slice().try_into().ok()
     }
 
-    pub const fn hear(&mut self, mains: Mains) {
+    pub fn hear(&mut self, mains: Mains) {
         self.mains = mains.is_heard();
-        self.filled = 0;
+        self.window.clear();
     }
 }
 

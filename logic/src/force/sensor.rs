@@ -9,7 +9,6 @@ use super::drift::{Cells, Drift};
 use super::fsr::{force_mn, uv_above_rest};
 
 pub const ZERO_LIMIT_UV: i32 = 60_000;
-
 pub(super) const CARRIES_MN: i32 = 15;
 /// Quadrants that have to carry a load. A shear along a diagonal may unload one.
 const AGREEING: usize = 3;

@@ -7,7 +7,6 @@ use super::arithmetic::Reciprocal;
 
 /// 2^26 is 1; within +-1.
 pub type Activation = Q32<26>;
-
 const RATIO_SHIFT: u32 = 30 - 26;
 const RATIO_HALF: u32 = 1 << (RATIO_SHIFT - 1);
 const ONE: i32 = 1 << 26;

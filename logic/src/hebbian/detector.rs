@@ -54,7 +54,6 @@ const FILMS: Range<usize> = 0..PVDF_COUNT;
 const GAUGES: Range<usize> = PVDF_COUNT..RECEPTORS;
 const ONE: i64 = 1 << 26;
 const SOMEWHERE_MAX: usize = 6;
-
 const SHEAR_IS_JUDGED: u8 = slot_of(Job::Forces) + 1;
 const CYCLE_ENDS: u8 = 20;
 /// Least value of the second output that tells a direction; 128 is 1.

@@ -33,5 +33,4 @@ pub use tenax_hal_shim::words::{Code, Codes, NoLesson};
 pub const RECEPTORS: usize = 24;
 /// Relative motion (o1) and direction (o2).
 pub const OUTPUTS: usize = 2;
-
 pub type FingertipNetwork = Network<RECEPTORS, OUTPUTS>;

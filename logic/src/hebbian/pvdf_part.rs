@@ -9,7 +9,6 @@ use crate::detectors::Sensed;
 
 /// Fraction bits of an envelope (Q16) below the resolution of a film; 4 are left, as a gauge's load has.
 const ENVELOPE_SHIFT: u32 = 12;
-
 /// Step of a quiet level in a tick, 1/16 of a sample. A constant step makes it the median.
 const QUIET_STEP: i32 = 1;
 

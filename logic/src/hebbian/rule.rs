@@ -62,39 +62,3 @@ impl Default for Rule {
         Self::DEFAULT
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_ends_of_the_ranges_fit_their_formats() {
-        let good = Config::default();
-        for wrong in [
-            Config { alpha_ppb: 60_000_001, ..good },
-            Config { beta_ppb: u32::MAX, ..good },
-            Config { delta_ppm: 0, ..good },
-        ] {
-            assert_eq!(Rule::new(&wrong), None);
-        }
-        let ends = |range: RangeInclusive<u32>| [*range.start(), *range.end()];
-        for alpha_ppb in ends(Config::ALPHA_PPB) {
-            for beta_ppb in ends(Config::BETA_PPB) {
-                for delta_ppm in ends(Config::DELTA_PPM) {
-                    let rule = Rule::new(&Config { alpha_ppb, beta_ppb, delta_ppm }).unwrap();
-                    assert!(rule.alpha < 1 << 31 && (0..1 << 28).contains(&-rule.minus_beta));
-                    assert!((1 << 13..=1 << 26).contains(&rule.delta));
-                    assert!(
-                        (f64::from(rule.alpha) / 2f64.powi(35) * 1e9 - f64::from(alpha_ppb)).abs() < 0.03
-                    );
-                    assert!(
-                        (f64::from(rule.minus_beta) / 2f64.powi(32) * 1e9 + f64::from(beta_ppb)).abs() < 0.12
-                    );
-                    assert!(
-                        (f64::from(rule.delta) / 2f64.powi(23) * 1e6 - f64::from(delta_ppm)).abs() < 0.06
-                    );
-                }
-            }
-        }
-    }
-}

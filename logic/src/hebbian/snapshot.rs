@@ -13,7 +13,6 @@ use super::network::{Network, Weight};
 use crate::checksum::CRC;
 
 pub const VERSION: u8 = 2;
-
 const HEADER: usize = 4;
 const WORD: usize = 4;
 
@@ -53,15 +52,6 @@ impl<const I: usize, const O: usize> Contents<I, O> {
         *crc = CRC.checksum(body).to_le_bytes();
         Some(snapshot)
     }
-}
-
-pub fn save<'a, const I: usize, const O: usize>(
-    normaliser: &Normaliser<I>,
-    network: &Network<I, O>,
-    more: u32,
-    buffer: &'a mut [u8],
-) -> Option<&'a [u8]> {
-    Contents::of(normaliser, network, more).write(buffer)
 }
 
 pub fn restore<const I: usize, const O: usize>(
@@ -114,7 +104,7 @@ mod tests {
             network.learn(&rule, &t, &[Code::Minus, Code::Plus]);
         }
         let mut bytes = [0; LENGTH];
-        assert_eq!(save(&normaliser, &network, 77, &mut bytes).map(<[u8]>::len), Some(LENGTH));
+        assert!(Contents::of(&normaliser, &network, 77).write(&mut bytes).is_some());
         (normaliser, network, bytes)
     }
 
@@ -132,7 +122,7 @@ mod tests {
         assert_eq!(network_back.weights(), network.weights());
         assert_ne!(network.weights(), Network::<3, 2>::default().weights());
         let mut again = [0; LENGTH];
-        assert_eq!(save(&normaliser_back, &network_back, more, &mut again), Some(&bytes[..]));
+        assert_eq!(Contents::of(&normaliser_back, &network_back, more).write(&mut again), Some(&bytes[..]));
     }
 
     #[test]
@@ -151,7 +141,7 @@ mod tests {
             bytes[at] = other;
             assert!(restore::<3, 2>(&CONFIG, &resealed(bytes)).is_none(), "byte {at}");
         }
-        assert_eq!(save(&normaliser, &network, 77, &mut [0; LENGTH - 1]), None);
+        assert_eq!(Contents::of(&normaliser, &network, 77).write(&mut [0; LENGTH - 1]), None);
     }
 
     #[test]

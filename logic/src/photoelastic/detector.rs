@@ -8,7 +8,6 @@ use tenax_hal_shim::channel::frames;
 
 /// Time after an impact or a fast run of the motor: the load still changes, and the filters ring.
 const AFTER_NOISE: u32 = frames(160);
-
 const ANSWERED: u32 = frames(50);
 
 #[derive(Clone, Copy, Debug, Default)]

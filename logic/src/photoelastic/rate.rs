@@ -67,18 +67,4 @@ mod tests {
         }
         assert_eq!((exp2(-1), exp2(i32::MAX), log2(i32::MIN)), (0, RATE_MAX_UM_S, 0));
     }
-
-    #[test]
-    fn a_fit_is_what_it_says() {
-        // rate = 2 amplitude frequency / force.
-        let fit = RateFit {
-            constant: 1 << LEVEL_Q,
-            amplitude: 1 << LEVEL_Q,
-            frequency: 1 << LEVEL_Q,
-            force: -(1 << LEVEL_Q),
-        };
-        let rate = f64::from(fit.rate_um_s(64, 5_120, 1_000));
-        assert!((rate / (2.0 * 64.0 * 6_250.0 / 1_000.0) - 1.0).abs() < 0.03, "{rate}");
-        assert_eq!(fit.rate_um_s(i32::MAX, 0, i32::MIN), RATE_MAX_UM_S);
-    }
 }

@@ -9,11 +9,9 @@ pub const BAND_LOW_HZ: u32 = 20;
 pub const BAND_HIGH_HZ: u32 = 250;
 pub const ENVELOPE_HZ: u32 = 12;
 pub const Q: u32 = 14;
-
 const MIDDLE: i32 = 1 << 13;
 const NOISE: i32 = 2 << Q;
 const PERIOD_MAX: u16 = 250;
-
 static HIGH_PASS: LowPass = LowPass::of(BAND_LOW_HZ as f64);
 static LOW_PASS: LowPass = LowPass::of(BAND_HIGH_HZ as f64);
 static ENVELOPE: LowPass = LowPass::of(ENVELOPE_HZ as f64);

@@ -9,10 +9,8 @@ use crate::emg::model::{EmgModel, MODEL_WORDS};
 use crate::force::sensor::ZERO_LIMIT_UV;
 
 const VALUE_BITS: u32 = 24;
-
 pub type SettingsBytes = Vec<u8, { 4 * SettingId::ALL.len() }>;
 pub type ZeroBytes = [u8; 4 * FSR_COUNT];
-
 pub type EmgBytes = [u8; 4 * MODEL_WORDS];
 
 pub fn of_emg(model: &EmgModel) -> EmgBytes {

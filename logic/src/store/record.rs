@@ -17,12 +17,9 @@ use crate::hebbian::{Learned, SNAPSHOT_LENGTH};
 use crate::store::payload::{EmgBytes, SettingsBytes, ZeroBytes};
 
 pub const OVERHEAD_WORDS: usize = 4;
-
 /// All bits 0, so that none is half programmed; it is no tag.
 pub(super) const MARK: u32 = 0;
-
 const COMMIT: u32 = 0x3C5A_96E1;
-
 pub const PAYLOAD_BYTES: usize = SNAPSHOT_LENGTH;
 
 #[derive(Clone, Debug)]

@@ -7,7 +7,6 @@ use super::record::{self, Tag};
 use crate::checksum::CRC;
 
 pub const OPENING_WORDS: usize = 3;
-
 const MAGIC: u32 = 0x7E4A_0001;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -7,10 +7,8 @@ use crate::low_pass::LowPass;
 const BAND_LOW_HZ: u32 = 20;
 const BAND_HIGH_HZ: u32 = 150;
 const ENVELOPE_US: u32 = 8_000;
-
 pub(crate) const Q: u32 = 16;
 const MIDDLE: i32 = 1 << 13;
-
 pub(super) static ENVELOPE: LowPass = LowPass::of(1e6 / (2.0 * core::f64::consts::PI * ENVELOPE_US as f64));
 
 /// Kept in memory: of a constant the compiler makes a product of 64 bits.
