@@ -17,6 +17,7 @@ mod sector;
 use tenax_hal_shim::flash::{FlashArea, FlashFailed, Sector};
 use tenax_hal_shim::words::Kept;
 
+use crate::checksum::CRC;
 use record::{MARK, Saving, Tag};
 use sector::{Entry, OPENING_WORDS, Survey};
 
@@ -107,8 +108,16 @@ impl Log {
         if after > self.limit {
             return Err(Refused::Full);
         }
-        let mark = (!self.marked).then_some(self.end);
-        let saving = Saving::new(self.sector, at, tag, self.next_sequence, words, mark);
+        let saving = Saving {
+            sector: self.sector,
+            at,
+            tag,
+            sequence: self.next_sequence,
+            payload: words,
+            digest: CRC.digest(),
+            step: 0,
+            mark: (!self.marked).then_some(self.end),
+        };
         self.marked = true;
         self.end = after;
         self.next_sequence = self.next_sequence.saturating_add(1);

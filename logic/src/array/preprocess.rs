@@ -30,12 +30,6 @@ impl PreprocessorConfig {
         Self { lag: 1, covariance_knee: 128, spectrum_knee: 2_048, structure_knee: 128, dead_max: 2 };
 }
 
-impl Default for PreprocessorConfig {
-    fn default() -> Self {
-        Self::DEFAULT
-    }
-}
-
 /// Covariance over `N` differences, spectrum over 40 sums and structure functions. Of an element that loses
 /// its reading, differences and covariances become 0, and the sum keeps its last value. Its return counts as
 /// no change: the missed force is added to the spectrum's whole window.

@@ -50,12 +50,7 @@ impl Skin {
                 Some((0..MARKERS).filter_map(|n| normal_mn(view, n)).map(|mn| score(mn.into())).sum())
             }
             (Self::Markers { .. }, None) => None,
-            (Self::Taxels(first), _) => {
-                let risen = |n: usize| Some(taxel_mn(i32::from(felt.taxels[n]?) - i32::from(first[n]?)));
-                let mut known = (0..ELEMENTS).filter_map(risen).peekable();
-                known.peek()?;
-                Some(known.map(score).sum())
-            }
+            (Self::Taxels(first), _) => sum_over(first, felt.taxels, score),
         }
     }
 
@@ -82,15 +77,8 @@ impl Skin {
                 Some((0..MARKERS).filter_map(changed).sum())
             }
             (Self::Markers { .. }, None) => None,
-            (Self::Taxels(first), _) => {
-                let changed = |n: usize| {
-                    let (was, is) = (i32::from(first[n]?), i32::from(felt.taxels[n]?));
-                    Some(u16::from(differs(0, taxel_mn(is - was))))
-                };
-                let mut known = (0..ELEMENTS).filter_map(changed).peekable();
-                known.peek()?;
-                Some(known.sum::<u16>() * (MARKERS / ELEMENTS) as u16)
-            }
+            (Self::Taxels(first), _) => sum_over(first, felt.taxels, |mn| differs(0, mn).into())
+                .map(|changed| changed * (MARKERS / ELEMENTS) as u16),
         }
     }
 }
@@ -122,8 +110,12 @@ fn shear_mn(view: &CameraView, n: usize) -> i16 {
     view.shear.get(n).map_or(0, |&steps| i16::from(steps) * SHEAR_STEP_MN as i16)
 }
 
-const fn taxel_mn(samples: i32) -> i32 {
-    samples * 1_000 / TAXEL_SAMPLES_PER_N
+/// Sum of a measure of each taxel's change, mN; None if no taxel is known.
+fn sum_over(first: &Reading, now: &Reading, measure: impl Fn(i32) -> u16) -> Option<u16> {
+    let change = |(was, is): (&Option<u16>, &Option<u16>)| Some(i32::from((*is)?) - i32::from((*was)?));
+    let mut known = first.iter().zip(now).filter_map(change).peekable();
+    known.peek()?;
+    Some(known.map(|samples| measure(samples * 1_000 / TAXEL_SAMPLES_PER_N)).sum())
 }
 
 const fn differs(was_mn: i32, by_mn: i32) -> bool {

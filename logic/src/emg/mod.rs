@@ -7,14 +7,13 @@ pub mod decide;
 pub mod fit;
 pub mod fitted;
 pub mod level;
-pub mod log2;
 pub mod mains;
 pub mod model;
 pub mod proof;
 pub mod settings;
-pub mod trust;
 #[cfg(test)]
 mod tests;
+pub mod trust;
 
 use tenax_hal_shim::front_end::MYO_REST_MV;
 

@@ -16,9 +16,7 @@ use tenax_hal_shim::words::{Code, Codes, NoLesson};
 use super::balance::Balance;
 use super::noise::Noise;
 use super::pvdf_part::PvdfPart;
-use super::{
-    Activations, FingertipNetwork, Normaliser, NormaliserConfig, Output, Sense, Situation, Teacher, snapshot,
-};
+use super::{Activations, FingertipNetwork, Normaliser, NormaliserConfig, Output, Sense, Teacher, snapshot};
 use crate::detectors::{Description, Detector, Said, Sensed, confidence};
 use crate::force::Ahead;
 use crate::hebbian::settings::HebbianConfig;
@@ -217,7 +215,7 @@ impl HebbianDetector {
     }
 
     pub fn teach(&mut self, config: &HebbianConfig, codes: Codes, age_ms: u16) {
-        self.teacher.receive(&config.teacher, codes, age_ms);
+        self.teacher.receive(config.teacher_fresh_ms, codes, age_ms);
     }
 
     pub fn forget(&mut self) {
@@ -313,7 +311,7 @@ impl HebbianDetector {
 
     fn learn(&mut self, config: &HebbianConfig, sensed: &Sensed<'_>, felt_so: bool) {
         let disturbed = sensed.vibration.impact || sensed.moves || !sensed.vibration_known;
-        self.lesson = self.teacher.lesson(&config.teacher, Situation { grasp: sensed.grasp, disturbed });
+        self.lesson = self.teacher.lesson(config.teacher_fresh_ms, sensed.grasp, disturbed);
         if let Ok(codes) = self.lesson {
             self.pvdf_part.stale = true;
             if sensed.slot == SHEAR_IS_JUDGED && codes[0] == Code::Minus {

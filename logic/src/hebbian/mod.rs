@@ -26,7 +26,7 @@ pub use detector::{HebbianDetector, Learned, NORMALISER, SNAPSHOT_LENGTH};
 pub use gains::Gains;
 pub use network::{Network, Output, Weight};
 pub use rule::{Config, Config as LearningConfig, Rule};
-pub use teacher::{Situation, Teacher, TeacherConfig};
+pub use teacher::Teacher;
 pub use tenax_hal_shim::words::{Code, Codes, NoLesson};
 
 /// 12 vibration, 12 pressure (Tada 2006, section III.A).

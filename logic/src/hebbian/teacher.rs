@@ -8,25 +8,6 @@ use crate::latest;
 
 const MEMORY: usize = 3;
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct TeacherConfig {
-    /// Age of the picture beyond which its codes are not used, ms.
-    pub fresh_ms: u16,
-}
-
-impl Default for TeacherConfig {
-    /// A camera's two frames of 33 ms, one more to be replaced in, and 20 ms on the way.
-    fn default() -> Self {
-        Self { fresh_ms: 120 }
-    }
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Situation {
-    pub grasp: bool,
-    pub disturbed: bool,
-}
-
 #[derive(Clone, Debug, Default)]
 pub struct Teacher {
     said: [Codes; MEMORY],
@@ -36,8 +17,8 @@ pub struct Teacher {
 
 impl Teacher {
     /// Codes of an older picture than the newest are dropped; a silence of `fresh_ms` forgets those before it.
-    pub fn receive(&mut self, config: &TeacherConfig, codes: Codes, age_ms: u16) {
-        if self.age_ms > config.fresh_ms {
+    pub fn receive(&mut self, fresh_ms: u16, codes: Codes, age_ms: u16) {
+        if self.age_ms > fresh_ms {
             self.heard = 0;
         }
         if self.heard > 0 && age_ms > self.age_ms {
@@ -56,11 +37,13 @@ impl Teacher {
         (self.heard > 0).then_some(self.age_ms)
     }
 
-    pub fn lesson(&self, config: &TeacherConfig, situation: Situation) -> Result<Codes, NoLesson> {
+    /// `fresh_ms`: age of the picture beyond which its codes are not used. `disturbed`: the motor runs, the hand
+    /// is struck or swung, or a receptor has just been lost.
+    pub fn lesson(&self, fresh_ms: u16, grasp: bool, disturbed: bool) -> Result<Codes, NoLesson> {
         if self.heard == 0 {
             return Err(NoLesson::Absent);
         }
-        if self.age_ms > config.fresh_ms {
+        if self.age_ms > fresh_ms {
             return Err(NoLesson::Late);
         }
         if self.heard < MEMORY {
@@ -71,8 +54,8 @@ impl Teacher {
             [Code::Zero, Code::Zero] => Err(NoLesson::NothingMoves),
             // "Both the hand and the object do not move", and the hand moves.
             [Code::Zero, _] => Err(NoLesson::Contradicting),
-            _ if !situation.grasp => Err(NoLesson::NoGrasp),
-            _ if situation.disturbed => Err(NoLesson::Disturbed),
+            _ if !grasp => Err(NoLesson::NoGrasp),
+            _ if disturbed => Err(NoLesson::Disturbed),
             _ => Ok(codes),
         }
     }
@@ -93,13 +76,12 @@ mod tests {
     use super::*;
     use Code::{Minus, Plus, Zero};
 
-    const CONFIG: TeacherConfig = TeacherConfig { fresh_ms: 120 };
-    const HELD: Situation = Situation { grasp: true, disturbed: false };
+    const FRESH_MS: u16 = 120;
 
     fn after(messages: &[Codes]) -> Teacher {
         let mut teacher = Teacher::default();
         for &codes in messages {
-            teacher.receive(&CONFIG, codes, 40);
+            teacher.receive(FRESH_MS, codes, 40);
             for _ in 0..33 {
                 teacher.tick_ms();
             }
@@ -108,7 +90,7 @@ mod tests {
     }
 
     fn lesson(messages: &[Codes]) -> Result<Codes, NoLesson> {
-        after(messages).lesson(&CONFIG, HELD)
+        after(messages).lesson(FRESH_MS, true, false)
     }
 
     #[test]
@@ -147,19 +129,19 @@ mod tests {
         for _ in 73..120 {
             teacher.tick_ms();
         }
-        assert!(teacher.lesson(&CONFIG, HELD).is_ok());
+        assert!(teacher.lesson(FRESH_MS, true, false).is_ok());
         teacher.tick_ms();
-        assert_eq!(teacher.lesson(&CONFIG, HELD), Err(NoLesson::Late));
+        assert_eq!(teacher.lesson(FRESH_MS, true, false), Err(NoLesson::Late));
         for _ in 0..100_000 {
             teacher.tick_ms();
         }
-        assert_eq!(teacher.lesson(&CONFIG, HELD), Err(NoLesson::Late));
-        teacher.receive(&CONFIG, [Minus, Plus], 40);
-        assert_eq!(teacher.lesson(&CONFIG, HELD), Err(NoLesson::Absent));
+        assert_eq!(teacher.lesson(FRESH_MS, true, false), Err(NoLesson::Late));
+        teacher.receive(FRESH_MS, [Minus, Plus], 40);
+        assert_eq!(teacher.lesson(FRESH_MS, true, false), Err(NoLesson::Absent));
         let mut late = Teacher::default();
         for _ in 0..9 {
-            late.receive(&CONFIG, [Minus, Plus], 121);
+            late.receive(FRESH_MS, [Minus, Plus], 121);
         }
-        assert_eq!(late.lesson(&CONFIG, HELD), Err(NoLesson::Late));
+        assert_eq!(late.lesson(FRESH_MS, true, false), Err(NoLesson::Late));
     }
 }

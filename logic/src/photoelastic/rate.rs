@@ -1,7 +1,7 @@
 //! Rate of slip from amplitude and frequency of the ac part: a fit of logarithms to one material (`tenax
 //! calibrate photoelastic`). On another material it is off by a factor.
 
-use crate::emg::log2::{LEVEL_Q, level_of};
+use crate::emg::level::{self, LEVEL_Q};
 
 /// `log2 rate = a + b log2 amplitude + c log2 frequency + d log2 force` (no published law), factors Q10:
 /// part of the span (Q20), mHz, mN, um/s.
@@ -14,11 +14,10 @@ pub struct RateFit {
 }
 
 const RATE_MAX_UM_S: i32 = 20_000;
-const RAISED: u32 = 13;
 
 /// Q10, of 1 to 2^17.
 fn log2(number: i32) -> i32 {
-    level_of(number.clamp(1, 1 << 17) << RAISED) - ((RAISED as i32) << LEVEL_Q)
+    level::log2(number.clamp(1, 1 << 17) as u32)
 }
 
 /// `2^x`, x in Q10, rounded down; a parabola between powers, within 0.3 %.

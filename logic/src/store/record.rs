@@ -114,28 +114,17 @@ impl Tag {
 
 /// Dropped before its end, the record does not count.
 pub struct Saving<'a> {
-    sector: Sector,
-    at: usize,
-    tag: Tag,
-    sequence: u32,
-    payload: &'a [[u8; 4]],
-    digest: Digest<'static, u32>,
-    step: usize,
-    mark: Option<usize>,
+    pub(super) sector: Sector,
+    pub(super) at: usize,
+    pub(super) tag: Tag,
+    pub(super) sequence: u32,
+    pub(super) payload: &'a [[u8; 4]],
+    pub(super) digest: Digest<'static, u32>,
+    pub(super) step: usize,
+    pub(super) mark: Option<usize>,
 }
 
-impl<'a> Saving<'a> {
-    pub(super) fn new(
-        sector: Sector,
-        at: usize,
-        tag: Tag,
-        sequence: u32,
-        payload: &'a [[u8; 4]],
-        mark: Option<usize>,
-    ) -> Self {
-        Self { sector, at, tag, sequence, payload, digest: CRC.digest(), step: 0, mark }
-    }
-
+impl Saving<'_> {
     /// Programs the next word; true when it was the last one. After a failure it never counts.
     pub fn step(&mut self, area: &mut impl FlashArea) -> Result<bool, FlashFailed> {
         if let Some(place) = self.mark.take() {
@@ -156,11 +145,5 @@ impl<'a> Saving<'a> {
         super::program(area, self.sector, place, word)?;
         self.step += 1;
         Ok(self.step == self.tag.record_words())
-    }
-}
-
-impl core::fmt::Debug for Saving<'_> {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.debug_struct("Saving").field("tag", &self.tag).field("step", &self.step).finish_non_exhaustive()
     }
 }
