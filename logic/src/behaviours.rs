@@ -39,7 +39,6 @@ pub enum Course {
     Ends(Ending),
 }
 
-/// Longest duration of each behaviour.
 const STROKE_FRAMES_MAX: u32 = frames(60_000);
 const GRASP_FRAMES_MAX: u32 = frames(20_000);
 const HAND_OVER_FRAMES_MAX: u32 = frames(20_000);

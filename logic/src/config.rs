@@ -30,7 +30,6 @@ pub struct Config {
     pub stream_at_start: bool,
     pub no_wearer: bool,
     pub detectors_off: DetectorSet,
-    /// 0 off, 1 discreet, 2 strong.
     pub feedback: u16,
 }
 

@@ -25,7 +25,6 @@ pub use injected::Injected;
 pub struct Sensed<'a> {
     pub frame: u32,
     pub slot: u8,
-    /// False: no samples; only time has passed.
     pub valid: bool,
     pub vibration: Vibration,
     /// Envelopes in the slip band, Q16 samples (14 bits).

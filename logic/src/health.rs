@@ -8,9 +8,7 @@ pub struct Limits {
     pub low: u16,
     pub high: u16,
     pub stuck_after: u32,
-    /// Bad readings in a row after which it is reported. A single one already has no value.
     pub lost_after: u32,
-    /// Good readings in a row after which a lost sensor is believed again.
     pub back_after: u32,
 }
 

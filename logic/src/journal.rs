@@ -16,7 +16,6 @@ pub struct Journal {
     samples: SamplesSum,
     events: Deque<Event, EVENTS>,
     events_lost: u16,
-    /// A sensor, an ability or the motor was lost, which the wearer is to be told.
     lost: bool,
 }
 

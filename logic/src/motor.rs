@@ -40,7 +40,6 @@ const MOVED: u16 = sample_from_mv(8);
 const HEAT_SHIFT: u32 = 9;
 /// Slow frames without a drive after which no current flows: 0.2 s, with the motor's dead time.
 const IDLE_CYCLES: u8 = 16;
-/// Further such slow frames in which a current means a fault of sensor or bridge.
 const ODD_CYCLES: u8 = 16;
 const MA_Q14: u32 =
     (((REFERENCE_MV as u64 * 1_000) << 14) / (SAMPLE_MAX as u64 * MOTOR_MV_PER_A as u64)) as u32;
@@ -53,7 +52,6 @@ const REST: u16 = sample_from_mv(CHANNELS[MOTOR_CURRENT].rest_mv);
 #[derive(Clone, Debug, Default)]
 struct Sensor {
     health: SensorHealth,
-    /// Sample of this slow frame; None if its frame was lost.
     sample: Option<u16>,
 }
 
@@ -87,7 +85,6 @@ pub struct Motor {
     bridge_is_off: bool,
     idle: u8,
     odd: u8,
-    /// The sensor shows a current that cannot be.
     contradicts: bool,
 }
 

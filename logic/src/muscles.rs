@@ -16,7 +16,6 @@ use crate::journal::Journal;
 
 const MISSES: u8 = 3;
 const HZ: u32 = 3 * SLOW_HZ;
-/// Equal readings of an active muscle in a row that no muscle gives: 50 ms.
 const FROZEN_AFTER: u32 = HZ / 20;
 static LIMITS: Limits = Limits { lost_after: HZ / 20 + 1, ..Limits::of(&CHANNELS[MYO_FLEXOR], HZ) };
 
@@ -40,7 +39,6 @@ pub struct Muscles {
     model: Option<EmgModel>,
     watch: Watch,
     lesson: Option<Lesson>,
-    /// Frame at which the last calibration ended, and whether it was taken.
     ended: Option<(u32, bool)>,
 }
 

@@ -7,7 +7,6 @@ use tenax_hal_shim::frame::Frame;
 pub struct LastSamples {
     pvdf: [u16; PVDF_COUNT],
     switch_a: [u16; SWITCH_INPUTS as usize],
-    /// 14-bit samples; 0 of an input without a sample yet.
     pub switch_b: [u16; SWITCH_INPUTS as usize],
 }
 

@@ -77,7 +77,6 @@ pub struct Senses {
     pub gate: Gate,
     pub motor: Motor,
     pub grip: Grip,
-    /// Load below a quarter of `loaded-mn`: the finger touches nothing.
     pub unloaded: bool,
 }
 

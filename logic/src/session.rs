@@ -5,7 +5,6 @@
 use tenax_hal_shim::wire::Refusal;
 
 pub const WINDOW: u16 = 1_024;
-/// Numbers of a session before it ends, so that no recorded frame lies in its window again.
 const NUMBERS_MAX: u16 = u16::MAX - 2 * WINDOW;
 
 #[derive(Clone, Debug, Default)]
@@ -66,7 +65,6 @@ impl Session {
     }
 }
 
-/// Finalizer of MurmurHash3.
 const fn mixed(mut number: u32) -> u32 {
     number ^= number >> 16;
     number = number.wrapping_mul(0x85EB_CA6B);

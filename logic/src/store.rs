@@ -42,7 +42,6 @@ pub enum Refused {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Erase {
     Allowed,
-    /// The hand was reset and may hold something: only the room that is left is used.
     Postponed,
 }
 

@@ -7,7 +7,6 @@ use tenax_hal_shim::words::Reason;
 use crate::health::{Change, Limits, SensorHealth};
 
 const Q: u32 = 4;
-/// Readings over which the zero follows, log2: 0.8 s.
 const FOLLOW_SHIFT: u32 = 6;
 static LIMITS: Limits = Limits::of(&CHANNELS[STRAIN], SLOW_HZ);
 const REST: i32 = (sample_from_mv(CHANNELS[STRAIN].rest_mv) as i32) << (Q + FOLLOW_SHIFT);

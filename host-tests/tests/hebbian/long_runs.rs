@@ -4,14 +4,14 @@ use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use tenax_logic::hebbian::{Activation, Activations, Code, Codes, Config, FingertipNetwork, RECEPTORS, Rule};
 
-use super::oracle::{FULL_SCALE, Rates, Reference, exact, weights_of};
+use super::oracle::{FULL_SCALE, Rates, Reference, exact, outputs, weights_of};
 use super::task::Finger;
 
 const UPDATES: usize = 1_000_000;
 
 /// Largest errors of weights (relative to full scale) and of outputs, sampled every 97 updates and at the end.
 fn worst(config: Config, mut input: impl FnMut(usize) -> (Activations<RECEPTORS>, Codes)) -> (f64, f64) {
-    let rule = Rule::new(&config).unwrap();
+    let rule = Rule::of(&config);
     let rates = Rates::from(&config);
     let (mut fixed, mut reference) = (FingertipNetwork::default(), Reference::default());
     let (mut of_weights, mut of_outputs) = (0.0f64, 0.0f64);
@@ -19,8 +19,7 @@ fn worst(config: Config, mut input: impl FnMut(usize) -> (Activations<RECEPTORS>
         let (felt, codes) = input(n);
         let t = exact(&felt);
         if n % 97 == 0 || n == UPDATES {
-            let outputs = fixed.output(&felt, &[Code::Zero; 2]).map(|o| o.as_f64());
-            for (fixed, exact) in outputs.iter().zip(reference.output(&t, &[Code::Zero; 2])) {
+            for (fixed, exact) in outputs(&fixed, &felt).iter().zip(reference.output(&t, &[Code::Zero; 2])) {
                 of_outputs = of_outputs.max((fixed - exact).abs());
             }
             for (fixed, exact) in weights_of(&fixed).iter().flatten().zip(reference.weights.iter().flatten())
@@ -28,7 +27,7 @@ fn worst(config: Config, mut input: impl FnMut(usize) -> (Activations<RECEPTORS>
                 of_weights = of_weights.max((fixed - exact).abs() / FULL_SCALE);
             }
         }
-        fixed.learn(&rule, &felt, &codes);
+        fixed.learn(&rule, &felt, &codes.map(Some));
         reference.learn(&rates, &t, &codes);
     }
     println!("{config:?}: weights {of_weights:.1e} of full scale, outputs {of_outputs:.1e}");

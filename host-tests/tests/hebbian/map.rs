@@ -103,10 +103,10 @@ pub fn fate(weights: &[[f64; RECEPTORS]; 2], trial: &[Moment]) -> Fate {
 }
 
 pub fn teach(network: &mut FingertipNetwork, config: &Config, moments: &[Moment]) {
-    let rule = Rule::new(config).unwrap();
+    let rule = Rule::of(config);
     for moment in moments {
         if let Some(codes) = moment.lesson() {
-            network.learn(&rule, &moment.felt, &codes);
+            network.learn(&rule, &moment.felt, &codes.map(Some));
         }
     }
 }

@@ -12,6 +12,12 @@ pub fn weights_of<const I: usize, const O: usize>(network: &Network<I, O>) -> [[
     network.weights().map(|row| row.map(|weight| weight.as_f64()))
 }
 
+/// Outputs from touch alone (equations 3 and 4).
+pub fn outputs<const I: usize, const O: usize>(network: &Network<I, O>, t: &Activations<I>) -> [f64; O] {
+    let sum = |output| network.sum_of_parts(output, 0..I, t) as f64 / f64::from(1 << 26);
+    std::array::from_fn(|output| sum(output).clamp(-1.0, 1.0))
+}
+
 #[derive(Clone, Copy, Debug)]
 pub struct Rates {
     pub alpha: f64,

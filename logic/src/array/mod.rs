@@ -34,7 +34,6 @@ pub const ELEMENTS: usize = ARRAY_COUNT;
 pub const COVARIANCES: usize = ELEMENTS * (ELEMENTS + 1) / 2;
 /// 0 Hz to 40 Hz in steps of 2 Hz.
 pub const BINS: usize = SPECTRUM_WINDOW / 2 + 1;
-/// Inputs of the paper's network (Bamshad 2023, section 5.3).
 pub const PAPER_FEATURES: usize = COVARIANCES + BINS;
 pub const FEATURES: usize = PAPER_FEATURES + structure::STRUCTURES;
 pub const HIDDEN: [usize; 2] = [32, 16];

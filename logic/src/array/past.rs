@@ -2,7 +2,6 @@ use tenax_hal_shim::channel::{ARRAY, CHANNELS, sample_from_mv};
 
 use super::{ELEMENTS, Reading};
 
-/// Longest lag of a change, slow frames: half a second, for sensors that creep.
 pub const LAG_MAX: usize = 40;
 const FRAMES: usize = LAG_MAX + 1;
 

@@ -25,7 +25,6 @@ pub struct PreprocessorConfig {
 }
 
 impl PreprocessorConfig {
-    /// For 200 mV/N with half a millivolt (2.5 samples) of noise.
     pub const DEFAULT: Self =
         Self { lag: 1, covariance_knee: 128, spectrum_knee: 2_048, structure_knee: 128, dead_max: 2 };
 }

@@ -14,7 +14,6 @@ use super::past::{Changes, Past};
 pub const LAGS: [usize; 6] = [1, 2, 4, 8, 16, 32];
 const SHORT: usize = 4;
 pub const WINDOWS: usize = 6;
-/// Edges of the windows, slow frames ago.
 const EDGES: [usize; WINDOWS + 1] = [0, 1, 2, 4, 8, 16, 32];
 const FRAMES: usize = EDGES[WINDOWS];
 pub const STRUCTURES: usize = LAGS.len() * WINDOWS;

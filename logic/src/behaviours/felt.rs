@@ -9,7 +9,6 @@ use crate::grip::Grip;
 const TAXEL_SAMPLES_PER_N: i32 = 993;
 /// Scores of a cell's normal force, mN: noise, sufficient, medium, large (FingerVision 2017, section II-A).
 const SCORES: [(i32, u16); 3] = [(300, 5), (100, 3), (30, 1)];
-/// Change of a cell that counts, mN, or a quarter of its first reading.
 const CHANGE_MN: i32 = 60;
 /// Shear of all markers together that is a pull, mN: three times its noise.
 const PULL_MN: i32 = 250;
@@ -22,7 +21,6 @@ pub struct Felt<'a> {
     pub taxels: &'a Reading,
     pub grip: Grip,
     pub slips: bool,
-    /// Vibration of the films above half of S1's threshold.
     pub stirs: bool,
 }
 

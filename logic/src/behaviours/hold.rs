@@ -22,7 +22,6 @@ pub struct Hold {
     sums_q4: [i32; 2],
     may_slide: bool,
     slides: bool,
-    /// Frames of closing in this slip, times how much faster than usual.
     answered: u32,
     still: u32,
 }

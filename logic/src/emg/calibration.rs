@@ -11,7 +11,6 @@ use super::trust::TOP_UV;
 pub const PROMPT_FRAMES: u32 = 5 * FRAME_HZ;
 const REACTION_FRAMES: u32 = 7 * FRAME_HZ / 10;
 const MISSING_PERMILLE: u32 = 50;
-/// Share of readings at the top of the range that a phase may have, per mille: a short overshoot.
 const TOP_PERMILLE: u32 = 100;
 const HELD_PERMILLE: u32 = 600;
 const STANDS_OUT: i32 = octaves(500);
@@ -139,7 +138,6 @@ impl Calibration {
         Progress::Asks(prompt, PROMPT_FRAMES - within)
     }
 
-    /// The next call concludes, with some thousand instructions: outside the tick.
     pub const fn is_over(&self, frame: u32) -> bool {
         frame.wrapping_sub(self.began) >= 3 * PROMPT_FRAMES
     }

@@ -5,22 +5,17 @@
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fitted {
     pub mean_frames: i32,
-    /// Share of the calibrated rise from which a wish begins.
     pub begins: [i32; 2],
     pub ends: [i32; 2],
-    /// Least distance of a wish's end below its begin.
     pub hysteresis: i32,
     pub least_end: i32,
     /// Fall from the highest share that ends a wish: a muscle that relaxes slowly has let go.
     pub fall: i32,
-    /// Least fall of the level that ends a wish: a contraction fluctuates.
     pub least_fall: i32,
     pub crest_frames: i32,
     /// Rise above the lowest share since, from which a wish begins again: tone that stays is no new wish.
     pub rise: i32,
-    /// Least level above rest from which a wish begins.
     pub least_rise: i32,
-    /// Least standard deviations of rest above rest from which a wish begins.
     pub least_spreads: i32,
     /// Place of the electrodes' ratio, closing at 0, opening at 1000: closing begins below, opening above.
     pub place_begins: i32,
@@ -30,13 +25,11 @@ pub struct Fitted {
     pub rest_frames: i32,
     /// Time after other activity in which no opening begins, and in which only a strong one does.
     pub after_frames: [i32; 2],
-    /// Duration after which closing counts soon after opening.
     pub after_dwell: i32,
     /// Level above the calibrated opening from which nothing is a relaxing muscle.
     pub firmer: i32,
     /// Share of the other site, above the calibrated one, from which both contract.
     pub both: i32,
-    /// Share of either site that is activity.
     pub busy: i32,
 }
 

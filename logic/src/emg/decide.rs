@@ -13,7 +13,6 @@ const STRONG: i32 = 1_000;
 /// Share of closing that closes even without a reading of the opening site, per mille.
 const ALONE: i32 = 900;
 const CALM_FRAMES: u16 = 40;
-/// Time constant with which constant hum is subtracted, slow frames: 0.3 s.
 const HUM_FRAMES: i32 = 21;
 const MOST_DRIFT_UV: i32 = 1_500_000;
 const ACTIVE: [i32; 2] = [350, 250];
@@ -52,12 +51,10 @@ struct Sites {
     electrode: [usize; 2],
     rest: [i32; 2],
     rest_uv: [i32; 2],
-    /// Rise of each site in its own contraction.
     span: [i32; 2],
     begins: [i32; 2],
     ends: [i32; 2],
     fall: [i32; 2],
-    /// Share of the other site from which both contract, which is no wish.
     both: [i32; 2],
     /// Least rise of the other electrode with each wish; None if its signal is too small.
     hears: [Option<i32>; 2],

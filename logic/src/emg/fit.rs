@@ -10,7 +10,6 @@ use super::model::{EmgModel, Point};
 const OVER_FRAMES: u8 = 8;
 const LEAST_FRAMES: u32 = 40;
 const MOST_FRAMES: u16 = 4_800;
-/// Part of a contraction's slow frames that must be a wish, or it is unanswered.
 const ANSWERED: [u32; 2] = [2, 5];
 pub const CONTRACTIONS: u8 = 12;
 /// Unanswered contractions, or turns less than an eighth of the calibrated ones', that show moved electrodes.

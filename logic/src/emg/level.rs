@@ -24,7 +24,6 @@ pub const fn log2(number: u32) -> i32 {
     ((octave << LEVEL_Q) + ((m + bend) >> (15 - LEVEL_Q))) as i32
 }
 
-/// Highest envelope of this level, uV.
 pub const fn uv_of(level: i32) -> i32 {
     let (mut uv, mut bit) = (0, 1 << 21);
     while bit > 0 {

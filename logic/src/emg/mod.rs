@@ -35,7 +35,6 @@ const PAIRS: u8 = 3;
 #[derive(Clone, Debug, Default)]
 struct Channel {
     trust: Trust,
-    /// Envelopes at which the muscle becomes active and ceases to be, uV.
     active_uv: [i32; 2],
     sum_uv: i32,
     count: i32,
@@ -88,7 +87,6 @@ impl Channel {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Verdict {
     pub wish: Wish,
-    /// 0 to 1000 per mille: for the speed. 0 at rest.
     pub strength_permille: u16,
     /// An unproven contraction moves the hand slowly and little.
     pub proven: bool,

@@ -14,7 +14,6 @@ pub(super) const fn octaves(permille: i32) -> i32 {
 
 /// Least rise of a contraction's site above rest: a factor of 2.3.
 const LEAST_RISE: i32 = octaves(1_200);
-/// Least difference of the electrodes' ratio between the two contractions: a factor of 2.3.
 const LEAST_TURN: i32 = octaves(1_200);
 /// Least distance of two of the three states, in thousandths of their common standard deviation.
 pub const LEAST_SEPARATION_PERMILLE: i32 = 2_200;
@@ -33,7 +32,6 @@ pub struct EmgModel {
 }
 
 impl EmgModel {
-    /// Fails with the reason why no calibration could have given these.
     pub const fn new(
         rest: Point,
         close: Point,
@@ -96,7 +94,6 @@ impl EmgModel {
         ((self.open[1] - self.open[0]) - (self.close[1] - self.close[0])).abs()
     }
 
-    /// Electrode that is relatively stronger in closing: 0 flexor, 1 extensor.
     pub const fn closing_site(&self) -> usize {
         let [close, open] = [self.close[1] - self.close[0], self.open[1] - self.open[0]];
         if open >= close { 0 } else { 1 }

@@ -21,9 +21,7 @@ const HEARD_FOR: u8 = 2;
 const MOST_IN_BLOCK: i32 = 650;
 const PART_OF_BLOCK: i32 = 100;
 const BLOCKS_OF_RISE: usize = 3;
-/// Least height of a gradual rise, Q10 octaves.
 const LEAST_RISE: i32 = 512;
-/// Part of its fastest step to which a gradual rise has slowed down, per mille.
 const SLOWER: i32 = 600;
 const APART_PART: i32 = 12;
 /// Slow frames within which the same wish goes on without new proof: 0.1 s.
@@ -43,7 +41,6 @@ struct Swings {
     low: i32,
     high: Option<i32>,
     was_active: bool,
-    /// The other electrode's level at `low`, and its highest level since.
     other: [i32; 2],
     lone: u8,
     since: u16,

@@ -7,7 +7,6 @@ use tenax_hal_shim::wire::Forces;
 const GROWTH_PART: i32 = 2;
 /// Growth of the load from which shear shows a held object: 1/8 of it, several times the hysteresis.
 const SHOWS_PART: i32 = 8;
-/// Ft of a held object grows by less than 1/4 of what it would if it slid.
 const HELD_PART: i64 = 4;
 
 #[derive(Clone, Copy, Debug, Default)]
@@ -16,7 +15,6 @@ pub struct Asked(Option<At>);
 #[derive(Clone, Copy, Debug)]
 struct At {
     load_mn: i32,
-    /// None where no ratio was known.
     ft_mn: Option<i32>,
 }
 

@@ -10,7 +10,6 @@ const SIGNS: [i32; FSR_COUNT] = [1, -1, 1, -1];
 /// Tolerated contradiction of the cells, mN, and as a part of the load (Interlink's guide).
 const TOLERATED_MN: i32 = 60;
 const TOLERATED_PART: i32 = 20;
-/// Readings of contradiction after which a cell is blamed: half a second.
 const CONTRADICTS_FOR: u8 = 40;
 const LEARN: u8 = 40;
 const LEARN_SHIFT: u32 = 3;
@@ -25,7 +24,6 @@ const VOTE_SHIFT: u32 = 8;
 /// Drift that is followed in a reading, mN: 0.24 N/s of one cell, 0.5 N/s of all.
 const CELL_FOLLOWS_MN: i32 = 3;
 const ALL_FOLLOWS_MN: i32 = 6;
-/// Readings after the motor's last drive before a load stands still: 0.5 s.
 const STILL_FOR: u32 = 40;
 const YIELDS_PART: i32 = 5;
 

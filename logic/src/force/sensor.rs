@@ -12,13 +12,11 @@ pub const ZERO_LIMIT_UV: i32 = 60_000;
 pub(super) const CARRIES_MN: i32 = 15;
 /// Quadrants that have to carry a load. A shear along a diagonal may unload one.
 const AGREEING: usize = 3;
-/// Readings over which a zero follows while the hand is open: 0.8 s.
 const FOLLOWED_IN: i32 = 64;
 
 #[derive(Clone, Debug, Default)]
 pub struct ForceSensor {
     zero_uv: [i32; FSR_COUNT],
-    /// Drift of the zeros that an open hand shows, uV.
     drift_uv: [i32; FSR_COUNT],
     last_uv: [i32; FSR_COUNT],
     drift: Drift,

@@ -219,7 +219,7 @@ impl HebbianDetector {
     }
 
     pub fn forget(&mut self) {
-        self.normaliser.reset(&NORMALISER);
+        self.normaliser = Normaliser::new(&NORMALISER);
         self.network = FingertipNetwork::default();
         self.by_gauges = [0; NETWORK_OUTPUTS];
         self.weights_changed = true;
@@ -322,7 +322,7 @@ impl HebbianDetector {
             }
             if self.odd {
                 let codes = self.balance.admit(codes);
-                self.network.learn_some(&config.rule, &self.activations, &codes);
+                self.network.learn(&config.rule, &self.activations, &codes);
                 self.weights_changed = true;
                 self.updates = self.updates.saturating_add(1);
             } else {

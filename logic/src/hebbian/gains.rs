@@ -7,7 +7,6 @@ use super::network::Weight;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Gain {
     largest: u32,
-    /// Left shift of a reading, so that the maximum has 31 bits.
     shift: u32,
     /// Weight over the maximum's mantissa, Q26, within +-16.
     factor: i32,

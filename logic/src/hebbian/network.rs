@@ -26,10 +26,8 @@ use tenax_hal_shim::words::Code;
 pub type Weight = Q32<27>;
 /// 2^26 is 1.
 pub type Output = Q32<26>;
-const ONE: i64 = 1 << 26;
 const LIMIT: i32 = (1 << 30) - 1;
 const MAGNITUDE_SHIFT: u32 = 27 - 23;
-/// More inputs could overflow the sums.
 const INPUTS_MAX: usize = 31;
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -49,22 +47,6 @@ impl<const INPUTS: usize, const OUTPUTS: usize> Default for Network<INPUTS, OUTP
 }
 
 impl<const INPUTS: usize, const OUTPUTS: usize> Network<INPUTS, OUTPUTS> {
-    /// Equations 3 and 4, -1 to 1. With both codes [`Code::Zero`] they depend on the receptors alone.
-    pub fn output(&self, activations: &Activations<INPUTS>, codes: &[Code; OUTPUTS]) -> [Output; OUTPUTS] {
-        let mut outputs = [Output::default(); OUTPUTS];
-        for ((output, weights), &code) in outputs.iter_mut().zip(&self.weights).zip(codes) {
-            let sum: i64 = weights
-                .iter()
-                .zip(activations.as_bits())
-                .map(|(&weight, &t)| i64::from(in_use(weight)) * i64::from(t))
-                .sum();
-            // The code is added before the sum is cut to 32 bits.
-            let with_code = (sum >> 27) + i64::from(code.sign()) * ONE;
-            *output = Output::from_bits(with_code.clamp(-ONE, ONE) as i32);
-        }
-        outputs
-    }
-
     /// Part of each receptor before clipping, units of [`Output`], rounded down; empty out of range.
     #[inline]
     pub fn parts(
@@ -98,18 +80,8 @@ impl<const INPUTS: usize, const OUTPUTS: usize> Network<INPUTS, OUTPUTS> {
         self.parts(output, receptors, activations).map(i64::from).sum()
     }
 
-    /// Equations 5 and 6. An output whose code is [`Code::Zero`] only forgets.
-    pub fn learn(&mut self, rule: &Rule, activations: &Activations<INPUTS>, codes: &[Code; OUTPUTS]) {
-        self.learn_some(rule, activations, &codes.map(Some));
-    }
-
-    /// As [`learn`](Self::learn); an output whose code is None keeps its weights.
-    pub fn learn_some(
-        &mut self,
-        rule: &Rule,
-        activations: &Activations<INPUTS>,
-        codes: &[Option<Code>; OUTPUTS],
-    ) {
+    /// Equations 5 and 6. [`Code::Zero`] only forgets; an output without a code keeps its weights.
+    pub fn learn(&mut self, rule: &Rule, activations: &Activations<INPUTS>, codes: &[Option<Code>; OUTPUTS]) {
         for ((weights, magnitudes), code) in self.weights.iter_mut().zip(&mut self.magnitudes).zip(codes) {
             let Some(code) = code else { continue };
             let reciprocal = Reciprocal::of(rule.delta + *magnitudes);
@@ -131,10 +103,6 @@ impl<const INPUTS: usize, const OUTPUTS: usize> Network<INPUTS, OUTPUTS> {
                 *magnitudes += magnitude(*weight);
             }
         }
-    }
-
-    pub fn weight(&self, output: usize, input: usize) -> Option<Weight> {
-        Some(Weight::from_bits(in_use(*self.weights.get(output)?.get(input)?)))
     }
 
     pub fn weights(&self) -> [[Weight; INPUTS]; OUTPUTS] {

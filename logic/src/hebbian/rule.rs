@@ -4,7 +4,6 @@ use core::ops::RangeInclusive;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Config {
     pub alpha_ppb: u32,
-    /// With 0, weights only stop at their limit.
     pub beta_ppb: u32,
     /// Constant share of each connection, parts per million of a weight of 1. Never 0.
     pub delta_ppm: u32,
@@ -26,26 +25,19 @@ impl Default for Config {
     }
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Rule {
+    /// Q35, below 2^31, rounded down.
     pub(super) alpha: u32,
     /// Q32, above -2^28, rounded to nearest.
     pub(super) minus_beta: i32,
+    /// Q23, in 2^13..=2^26, rounded to nearest.
     pub(super) delta: u32,
 }
 
 impl Rule {
-    /// None if a rate is outside its range.
-    pub fn new(config: &Config) -> Option<Self> {
-        let allowed = Config::ALPHA_PPB.contains(&config.alpha_ppb)
-            && Config::BETA_PPB.contains(&config.beta_ppb)
-            && Config::DELTA_PPM.contains(&config.delta_ppm);
-        allowed.then(|| Self::of(config))
-    }
-
-    pub const DEFAULT: Self = Self::of(&Config::DEFAULT);
-
-    pub(crate) const fn of(config: &Config) -> Self {
+    /// The rates are within their ranges.
+    pub const fn of(config: &Config) -> Self {
         // 60e6 < 2^26, so nothing below leaves 64 bits, and the ranges above keep each result in its type.
         let beta = (((config.beta_ppb as u64) << 32) + 500_000_000) / 1_000_000_000;
         let delta = (((config.delta_ppm as u64) << 23) + 500_000) / 1_000_000;
@@ -54,11 +46,5 @@ impl Rule {
             minus_beta: -(beta as i32),
             delta: delta as u32,
         }
-    }
-}
-
-impl Default for Rule {
-    fn default() -> Self {
-        Self::DEFAULT
     }
 }

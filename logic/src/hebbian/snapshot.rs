@@ -98,10 +98,10 @@ mod tests {
         let mut normaliser = Normaliser::new(&CONFIG);
         normaliser.observe(&CONFIG, &[5, -7_000, 123_456]);
         let mut network = Network::default();
-        let rule = Rule::new(&Config::default()).unwrap();
+        let rule = Rule::of(&Config::default());
         let t = Activations::new([0.3, -0.7, 1.0].map(Activation::from_f64));
         for _ in 0..1_000 {
-            network.learn(&rule, &t, &[Code::Minus, Code::Plus]);
+            network.learn(&rule, &t, &[Some(Code::Minus), Some(Code::Plus)]);
         }
         let mut bytes = [0; LENGTH];
         assert!(Contents::of(&normaliser, &network, 77).write(&mut bytes).is_some());
@@ -151,6 +151,6 @@ mod tests {
         bytes[LENGTH - 3 * WORD..LENGTH - 2 * WORD].copy_from_slice(&i32::MIN.to_le_bytes());
         let (normaliser, network, _) = restore::<3, 2>(&CONFIG, &resealed(bytes)).unwrap();
         assert_eq!(normaliser.maxima(), [CONFIG.ceiling; 3]);
-        assert_eq!(network.weight(1, 2).map(Weight::into_bits), Some(-(1 << 30)));
+        assert_eq!(network.weights()[1][2].into_bits(), -(1 << 30));
     }
 }

@@ -29,7 +29,6 @@ pub enum Track {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Force {
-    /// mN.
     pub least_mn: i32,
     pub most_mn: i32,
 }

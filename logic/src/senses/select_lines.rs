@@ -25,7 +25,6 @@ enum Pair {
 pub(super) struct SelectLines {
     pair: Pair,
     until_back: u8,
-    /// Mask of the hidden bits of a sample: none, or all.
     hidden: u16,
     hidden_muscle: u16,
 }

@@ -14,7 +14,6 @@ pub struct Now {
     pub calibrated: u32,
     pub zero: ZeroBytes,
     pub updates: u32,
-    /// Only a resting hand without a lesson saves the network without a command.
     pub at_rest: bool,
     pub asked: bool,
 }

@@ -8,7 +8,6 @@ const WEIGHT: u32 = 8;
 
 #[derive(Clone, Debug, Default)]
 pub struct ChannelMask {
-    /// A bit for each film.
     pub masked: u16,
     suspect: u8,
     alone: u32,

@@ -40,7 +40,6 @@ pub struct Levels {
 }
 
 impl Film {
-    /// Q16 samples, also of a masked film.
     pub const fn level(&self) -> i32 {
         self.envelope
     }

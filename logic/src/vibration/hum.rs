@@ -17,7 +17,6 @@ const PER_HZ: f64 = 2.0 * core::f64::consts::PI / FRAME_HZ as f64 * 4_294_967_29
 const NOMINAL_HZ: [f64; 2] = [50.0, 60.0];
 const OFF_HZ: f64 = 1.0;
 const WITHIN: [[i32; 2]; 2] = [within(NOMINAL_HZ[0]), within(NOMINAL_HZ[1])];
-/// Step of the frequency in a vote: 0.25 Hz in a second of votes that agree.
 const VOTE: i32 = (0.25 * EVERY as f64 / FRAME_HZ as f64 * PER_HZ) as i32;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -42,7 +41,6 @@ impl Weights {
 #[derive(Clone, Debug)]
 pub struct Mains {
     now: Turn,
-    /// `2 sin(pi f / fs)`, Q32.
     step: i32,
     ticks: u8,
 }

@@ -21,7 +21,6 @@ use crate::vibration::settings::VibrationConfig;
 
 /// Frames for which a loud vibration must ring to be an impact; a sliding object rings for single ticks.
 const IMPACT_RINGS: u32 = 12;
-/// A peak of the envelope is forgotten over `2^PEAK_SHIFT` frames, 0.13 s.
 const PEAK_SHIFT: u32 = 8;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -13,7 +13,6 @@ const DOUBTED_AFTER: u32 = 2;
 /// Output of an amplifier without its film, samples, within 40 mV.
 const CUT: core::ops::RangeInclusive<u16> =
     sample_from_mv(PVDF_CUT_MV - 40)..=sample_from_mv(PVDF_CUT_MV + 40);
-/// Slow frames of a cut wire: 0.5 s.
 const CUT_AFTER: u8 = (SLOW_HZ / 2) as u8;
 const LIMITS: Limits = Limits::of(&CHANNELS[PVDF], FRAME_HZ);
 /// Unused top bit of a sample, so that one subtraction compares two samples in a word.
