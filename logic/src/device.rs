@@ -78,10 +78,7 @@ impl Device {
 
     #[inline(never)]
     fn about(&self) -> About {
-        // Not `collect`, which could panic.
-        let mut settings = Vec::new();
-        let all = SettingId::ALL.into_iter().map(|id| self.setting(id));
-        all.take_while(|setting| settings.push(*setting).is_ok()).for_each(drop);
+        let settings = self.settings(0);
         About { identity: self.identity, schema: SCHEMA, frames: self.stream.next(), settings }
     }
 
@@ -129,15 +126,7 @@ impl Device {
             (Err(refusal), _) => Answer::Refused(refusal),
             (Ok(()), Down::Set(Setting { id, .. }) | Down::Get(id)) => SettingId::from_number(id)
                 .map_or(Answer::Refused(Refusal::UnknownSetting), |id| Answer::Setting(self.setting(id))),
-            (Ok(()), Down::Settings(from)) => {
-                let asked = SettingId::ALL.into_iter().filter(|id| id.number() >= from);
-                let mut settings = Vec::new();
-                asked
-                    .map(|id| self.setting(id))
-                    .take_while(|setting| settings.push(*setting).is_ok())
-                    .for_each(drop);
-                Answer::Settings(settings)
-            }
+            (Ok(()), Down::Settings(from)) => Answer::Settings(self.settings(from)),
             (Ok(()), Down::Samples) => Answer::Samples(self.samples.in_order()),
             (Ok(()), Down::Hello) => Answer::Nonce(self.session.offer()),
             (Ok(()), Down::About) => Answer::About(self.about()),
@@ -153,6 +142,15 @@ impl Device {
     fn senses(&self) -> Senses {
         let films = self.fingertip.films();
         Senses { frame: self.fingertip.frame(), samples: self.samples.in_order(), films }
+    }
+
+    /// As many as fit, from this number on.
+    fn settings<const N: usize>(&self, from: u8) -> Vec<Setting, N> {
+        // Not `collect`, which could panic.
+        let mut settings = Vec::new();
+        let asked = SettingId::ALL.into_iter().filter(|id| id.number() >= from).map(|id| self.setting(id));
+        asked.take_while(|setting| settings.push(*setting).is_ok()).for_each(drop);
+        settings
     }
 
     fn setting(&self, id: SettingId) -> Setting {

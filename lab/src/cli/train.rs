@@ -6,6 +6,7 @@ use std::process::{Command, ExitCode};
 
 use anyhow::{Context, ensure};
 use tenax_frames::tool::{folder, format::Format, out, progress::with_bar, workspace};
+use tenax_logic::array::COVARIANCE_WINDOW;
 use tenax_sim::array::network::{self, Network};
 use tenax_sim::array::{adapt, edges};
 use tenax_sim::labelled::{self, Part, library};
@@ -120,6 +121,7 @@ fn train(path: &Path, args: &Args) -> anyhow::Result<[(&'static str, Vec<u8>); 4
     let name = path.display().to_string();
     let recipe = library::choose(path, args.recipe.as_deref())?;
     let features = Recipe::of(&recipe);
+    ensure!(!args.ship || features.window == COVARIANCE_WINDOW, "the firmware has another window");
     let bytes = fs::read(path).with_context(|| format!("{name}: cannot be read"))?;
     let mut recordings = labelled::parse(bytes.as_slice(), &recipe, &name)?;
     recordings.retain(|own| own.part != Some(Part::Test));

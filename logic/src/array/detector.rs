@@ -8,7 +8,7 @@ use tenax_hal_shim::schedule::ARRAY_SHARES;
 
 use super::network::Mlp;
 use super::preprocess::{Preprocessor, PreprocessorConfig};
-use super::{ARRAY_READ, COVARIANCE_WINDOW, HIDDEN, Reading, ShippedDetector};
+use super::{ARRAY_READ, HIDDEN, Reading, ShippedDetector};
 use crate::detectors::{Description, Detector, Said, Sensed};
 
 /// Shares of a slow frame's work, one a tick. 0: covariance, spectrum. 1: features of the spectrum, short
@@ -38,23 +38,19 @@ pub struct Judgement {
     /// Confidences at which slip begins and ends, per mille.
     pub on_permille: u16,
     pub off_permille: u16,
-    /// Consecutive slow frames that begin and end it.
-    pub on_frames: u8,
-    pub off_frames: u8,
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub struct Model<const N: usize = COVARIANCE_WINDOW> {
+pub struct Model {
     pub preprocessor: PreprocessorConfig,
     pub network: Mlp,
     pub judgement: Judgement,
 }
 
 #[derive(Clone, Debug)]
-pub struct ArrayDetector<'m, const N: usize = COVARIANCE_WINDOW> {
-    model: &'m Model<N>,
-    preprocessor: Preprocessor<N>,
-    contradicted: u8,
+pub struct ArrayDetector<'m> {
+    model: &'m Model,
+    preprocessor: Preprocessor,
     unjudged: u16,
     felt: bool,
     seen: [i16; H1],
@@ -62,12 +58,11 @@ pub struct ArrayDetector<'m, const N: usize = COVARIANCE_WINDOW> {
     verdict: ArrayVerdict,
 }
 
-impl<'m, const N: usize> ArrayDetector<'m, N> {
-    pub fn new(model: &'m Model<N>) -> Self {
+impl<'m> ArrayDetector<'m> {
+    pub fn new(model: &'m Model) -> Self {
         Self {
             model,
             preprocessor: Preprocessor::new(model.preprocessor),
-            contradicted: 0,
             unjudged: u16::MAX,
             felt: false,
             seen: [0; H1],
@@ -125,23 +120,14 @@ impl<'m, const N: usize> ArrayDetector<'m, N> {
     }
 
     fn judge(&mut self, logit: i32) {
-        let Judgement { logit_per_nat, on_permille, off_permille, on_frames, off_frames } =
-            self.model.judgement;
+        let Judgement { logit_per_nat, on_permille, off_permille } = self.model.judgement;
         let confidence_permille = logistic_permille(logit, logit_per_nat);
-        let slip = self.verdict.slip;
-        let contradicts =
-            if slip { confidence_permille < off_permille } else { confidence_permille >= on_permille };
-        self.contradicted = if contradicts { self.contradicted.saturating_add(1) } else { 0 };
-        let turns = contradicts && self.contradicted >= if slip { off_frames } else { on_frames };
-        if turns {
-            self.contradicted = 0;
-        }
+        let from = if self.verdict.slip { off_permille } else { on_permille };
         self.unjudged = 0;
-        self.verdict = ArrayVerdict { slip: slip != turns, confidence_permille, age_ms: 0 };
+        self.verdict = ArrayVerdict { slip: confidence_permille >= from, confidence_permille, age_ms: 0 };
     }
 
     fn stand_down(&mut self) {
-        self.contradicted = 0;
         self.unjudged = self.unjudged.saturating_add(1);
         let age_ms = u32::from(self.unjudged) * 1_000 / SLOW_HZ;
         let age_ms =

@@ -29,11 +29,11 @@ impl PreprocessorConfig {
         Self { lag: 1, covariance_knee: 128, spectrum_knee: 2_048, structure_knee: 128, dead_max: 2 };
 }
 
-/// Covariance over `N` differences, spectrum over 40 sums and structure functions. Of an element that loses
+/// Covariance over ten differences, spectrum over 40 sums and structure functions. Of an element that loses
 /// its reading, differences and covariances become 0, and the sum keeps its last value. Its return counts as
 /// no change: the missed force is added to the spectrum's whole window.
 #[derive(Clone, Debug)]
-pub struct Preprocessor<const N: usize = COVARIANCE_WINDOW> {
+pub struct Preprocessor {
     config: PreprocessorConfig,
     covariance_knee: Knee,
     spectrum_knee: Knee,
@@ -42,7 +42,7 @@ pub struct Preprocessor<const N: usize = COVARIANCE_WINDOW> {
     past: Past,
     ready: bool,
     sum: i32,
-    covariance: SlidingCovariance<N>,
+    covariance: SlidingCovariance,
     spectrum: SlidingSpectrum<SPECTRUM_WINDOW>,
     structure: Structure,
     missing: usize,
@@ -55,7 +55,7 @@ impl Default for Preprocessor {
     }
 }
 
-impl<const N: usize> Preprocessor<N> {
+impl Preprocessor {
     pub fn new(config: PreprocessorConfig) -> Self {
         let lag = usize::from(config.lag).clamp(1, LAG_MAX);
         Self {
@@ -70,7 +70,7 @@ impl<const N: usize> Preprocessor<N> {
             covariance: SlidingCovariance::default(),
             spectrum: SlidingSpectrum::default(),
             structure: Structure::default(),
-            missing: (N + lag).max(SPECTRUM_WINDOW).max(structure::READY_AFTER),
+            missing: (COVARIANCE_WINDOW + lag).max(SPECTRUM_WINDOW).max(structure::READY_AFTER),
             features: [0; FEATURES],
         }
     }
@@ -126,7 +126,7 @@ impl<const N: usize> Preprocessor<N> {
         &self.features
     }
 
-    pub fn covariance(&self) -> &SlidingCovariance<N> {
+    pub fn covariance(&self) -> &SlidingCovariance {
         &self.covariance
     }
 }

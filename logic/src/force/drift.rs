@@ -181,23 +181,18 @@ mod tests {
     use super::*;
     use std::vec::Vec;
 
-    #[derive(Clone, Copy)]
-    struct Motor {
-        still: u32,
-        opened: bool,
-    }
-
     const LOADED_MN: i32 = 600;
-    const STILL: Motor = Motor { still: 1_000, opened: false };
-    const MOVES: Motor = Motor { still: 0, opened: false };
+    /// Readings since the motor was driven.
+    const STILL: u32 = 1_000;
+    const MOVES: u32 = 0;
 
     fn cells(load: f64, x: f64, y: f64) -> [f64; FSR_COUNT] {
         [load + x + y, load + x - y, load - x - y, load - x + y].map(|four| four / 4.0)
     }
 
-    fn step(drift: &mut Drift, read_mn: [i32; FSR_COUNT], loaded_mn: i32, motor: Motor) -> Cells {
-        let cells = drift.step(read_mn, loaded_mn, motor.opened);
-        drift.think(read_mn, loaded_mn, motor.still);
+    fn step(drift: &mut Drift, read_mn: [i32; FSR_COUNT], still: u32) -> Cells {
+        let cells = drift.step(read_mn, LOADED_MN, false);
+        drift.think(read_mn, LOADED_MN, still);
         cells
     }
 
@@ -214,8 +209,8 @@ mod tests {
 
     fn holding(cells: [f64; FSR_COUNT]) -> Drift {
         let mut drift = Drift::default();
-        (0..40).for_each(|_| _ = step(&mut drift, read(cells), LOADED_MN, MOVES));
-        (0..40).for_each(|_| _ = step(&mut drift, read(cells), LOADED_MN, STILL));
+        (0..40).for_each(|_| _ = step(&mut drift, read(cells), MOVES));
+        (0..40).for_each(|_| _ = step(&mut drift, read(cells), STILL));
         drift
     }
 
@@ -231,7 +226,7 @@ mod tests {
                 let x = 1_200.0 + pours * 70.0 * t_s.min(7.0);
                 let mut true_cells = cells(6_500.0, x, 0.0);
                 true_cells[cell] += way * 100.0 * t_s;
-                let [a, b, c, d] = known(step(&mut drift, read(true_cells), LOADED_MN, STILL));
+                let [a, b, c, d] = known(step(&mut drift, read(true_cells), STILL));
                 let (fx, fy) = (f64::from(a + b - c - d), f64::from(a + d - b - c));
                 let off = (fx - x).hypot(fy);
                 assert!(off < 750.0, "cell {cell}, {way}, {pours}: {off} mN after {t_s} s, {drift:?}");
@@ -252,7 +247,7 @@ mod tests {
             let turn = f64::from(n) / 80.0;
             let load = 4_000.0 + f64::from(n) * 2.0;
             let now = with(cells(load, 0.3 * load * turn.sin(), 0.3 * load * turn.cos()));
-            assert_eq!(known(step(&mut drift, read(now), LOADED_MN, MOVES)), read(now));
+            assert_eq!(known(step(&mut drift, read(now), MOVES)), read(now));
         }
         assert_eq!(drift.blamed(), None);
     }
@@ -263,18 +258,15 @@ mod tests {
         let mut seen = Vec::new();
         for n in 0..80 * 30 {
             let sunk = f64::from(n) / 80.0 * 100.0;
-            match step(&mut drift, read(cells(6_500.0, 1_200.0, 0.0).map(|mn| mn - sunk)), LOADED_MN, STILL) {
+            match step(&mut drift, read(cells(6_500.0, 1_200.0, 0.0).map(|mn| mn - sunk)), STILL) {
                 Cells::Known(cells) => seen.push(cells.iter().sum::<i32>()),
                 Cells::Sunk => break,
             }
         }
         assert!((80 * 12..80 * 16).contains(&seen.len()), "{}", seen.len());
         assert!(seen.iter().all(|load| (5_100..=6_500).contains(load)), "{:?}", seen.last());
-        assert_eq!(step(&mut drift, [0; FSR_COUNT], LOADED_MN, STILL), Cells::Sunk);
-        assert_eq!(
-            known(step(&mut drift, [0; FSR_COUNT], LOADED_MN, Motor { still: 0, opened: true })),
-            [0; 4]
-        );
+        assert_eq!(step(&mut drift, [0; FSR_COUNT], STILL), Cells::Sunk);
+        assert_eq!(known(drift.step([0; FSR_COUNT], LOADED_MN, true)), [0; 4]);
     }
 
     #[test]
@@ -284,9 +276,9 @@ mod tests {
             let mut load = 6_500.0;
             while load > 0.0 {
                 load -= falls_mn;
-                step(&mut drift, read(cells(load, 0.0, 0.0)), LOADED_MN, motor);
+                step(&mut drift, read(cells(load, 0.0, 0.0)), motor);
             }
-            assert_eq!(known(step(&mut drift, [0; FSR_COUNT], LOADED_MN, motor)), [0; FSR_COUNT]);
+            assert_eq!(known(step(&mut drift, [0; FSR_COUNT], motor)), [0; FSR_COUNT]);
         }
     }
 
@@ -299,12 +291,12 @@ mod tests {
                 off += way * 1.25;
                 let mut now = cells(6_500.0, 0.0, 0.0);
                 now[2] += off;
-                step(&mut drift, read(now), LOADED_MN, STILL);
+                step(&mut drift, read(now), STILL);
             }
             assert_eq!(drift.blamed(), Some(2));
             let mut empty = [0.0; FSR_COUNT];
             empty[2] += off;
-            let cells = known(step(&mut drift, read(empty), LOADED_MN, MOVES));
+            let cells = known(step(&mut drift, read(empty), MOVES));
             assert!(cells.iter().all(|&mn| mn <= CARRIES_MN), "{cells:?}");
         }
     }

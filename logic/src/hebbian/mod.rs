@@ -27,10 +27,8 @@ pub use gains::Gains;
 pub use network::{Network, Output, Weight};
 pub use rule::{Config, Config as LearningConfig, Rule};
 pub use teacher::Teacher;
+/// 12 vibration, 12 pressure (Tada 2006, section III.A); relative motion (o1) and direction (o2).
+pub use tenax_hal_shim::wire::{NETWORK_OUTPUTS as OUTPUTS, RECEPTORS};
 pub use tenax_hal_shim::words::{Code, Codes, NoLesson};
 
-/// 12 vibration, 12 pressure (Tada 2006, section III.A).
-pub const RECEPTORS: usize = 24;
-/// Relative motion (o1) and direction (o2).
-pub const OUTPUTS: usize = 2;
 pub type FingertipNetwork = Network<RECEPTORS, OUTPUTS>;

@@ -30,26 +30,3 @@ impl Noise {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_floor_follows_what_is_of_nothing_and_nothing_else() {
-        let mut noise = Noise::default();
-        let mut cycle = |of_a_tick: i64, is_nothing: bool| {
-            for _ in 0..FRAMES_PER_SLOW_FRAME {
-                noise.add(-of_a_tick);
-            }
-            noise.end_cycle(is_nothing);
-            noise.floor
-        };
-        assert_eq!(cycle(1_000, false), 0);
-        assert_eq!(cycle(100, true), 600);
-        assert_eq!(cycle(1_000_000, false), 600);
-        let settled = (0..80).map(|_| cycle(200, true)).last().unwrap();
-        assert!((1_190..=1_200).contains(&settled), "{settled}");
-        assert!((0..80).map(|_| cycle(0, true)).last().unwrap() < 20);
-    }
-}

@@ -124,35 +124,29 @@ const fn pair(samples: &[u16; 2]) -> u32 {
 mod tests {
     use super::*;
 
-    #[derive(Default)]
-    struct OneByOne([SensorHealth; PVDF_COUNT]);
+    type Verdict = ([Trust; PVDF_COUNT], std::vec::Vec<(usize, Change)>);
 
-    impl OneByOne {
-        fn check(
-            &mut self,
-            samples: &[u16; PVDF_COUNT],
-        ) -> ([Trust; PVDF_COUNT], std::vec::Vec<(usize, Change)>) {
-            let mut changes = std::vec::Vec::new();
-            let trusts = core::array::from_fn(|n| {
-                let (reading, change) = self.0[n].take(&LIMITS, samples[n]);
-                changes.extend(change.map(|change| (n, change)));
-                match reading {
-                    Err(_) => Trust::None,
-                    Ok(_) if self.0[n].same >= DOUBTED_AFTER => Trust::Doubtful,
-                    Ok(_) => Trust::Full,
-                }
-            });
-            (trusts, changes)
-        }
+    fn one_by_one(films: &mut [SensorHealth; PVDF_COUNT], samples: &[u16; PVDF_COUNT]) -> Verdict {
+        let mut changes = std::vec::Vec::new();
+        let trusts = core::array::from_fn(|n| {
+            let (reading, change) = films[n].take(&LIMITS, samples[n]);
+            changes.extend(change.map(|change| (n, change)));
+            match reading {
+                Err(_) => Trust::None,
+                Ok(_) if films[n].same >= DOUBTED_AFTER => Trust::Doubtful,
+                Ok(_) => Trust::Full,
+            }
+        });
+        (trusts, changes)
     }
 
     fn agree(frames: impl Iterator<Item = [u16; PVDF_COUNT]>) {
-        let (mut films, mut one_by_one) = (PvdfQuality::default(), OneByOne::default());
+        let (mut films, mut each) = (PvdfQuality::default(), Default::default());
         for (n, samples) in frames.enumerate() {
             let mut changes = std::vec::Vec::new();
             let trusts = films.check(&samples, |film, change| changes.push((film, change)));
             let trusts = trusts.unwrap_or([Trust::Full; PVDF_COUNT]);
-            assert_eq!((trusts, changes), one_by_one.check(&samples), "frame {n}: {samples:?}");
+            assert_eq!((trusts, changes), one_by_one(&mut each, &samples), "frame {n}: {samples:?}");
         }
     }
 

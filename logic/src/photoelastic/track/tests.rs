@@ -47,7 +47,6 @@ fn whatever_the_shear_the_force_is_within_what_is_said() {
             state ^= state << 17;
             low + (high - low) * (state >> 11) as f64 / (1_u64 << 53) as f64
         };
-        std::println!("seed {seed}");
         let (mut tracker, mut at) = (opened(), (0.0, 0.0));
         for _ in 0..6 {
             let to = (between(0.0, 5.9), between(0.0, 0.5));
