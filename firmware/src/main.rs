@@ -52,7 +52,6 @@ use tenax_hal_shim::channel::FRAME_HZ;
 use tenax_hal_shim::motor::MotorBridge;
 use tenax_hal_shim::wire::{ResetCause, Up};
 use tenax_hal_shim::words::Fault;
-use tenax_logic::device::Device;
 use tenax_logic::rescue::{self, Rescue};
 use tenax_logic::restart::{Mark, Start};
 use tenax_logic::store::Erase;

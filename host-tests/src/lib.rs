@@ -236,7 +236,6 @@ impl Bench {
 
     pub fn give(&mut self, frame: &Frame) -> MotorDrive {
         let drive = self.fingertip.tick(frame);
-        // As the device does.
         self.samples.record(frame);
         if frame.slot() == slot_of(Job::Think) {
             self.fingertip.think(&self.samples);

@@ -149,7 +149,6 @@ fn hear(emg: &mut Emg) {
 
 fn runner() -> TestRunner {
     let seed = std::env::var("PROPTEST_RNG_SEED").ok().and_then(|seed| seed.parse().ok()).unwrap_or(11);
-    println!("seed {seed}, {CASES} cases");
     let config =
         Config { failure_persistence: None, rng_seed: RngSeed::Fixed(seed), ..Config::with_cases(CASES) };
     let mut bytes = [0; 32];

@@ -1,6 +1,7 @@
 //! Telemetry of every tick: the records of a slow frame, and the events in between.
 
 use heapless::Deque;
+use tenax_hal_shim::channel::FRAMES_PER_SLOW_FRAME;
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::wire::{Event, EventKind, SamplesSum, TickRecord};
 use tenax_hal_shim::words::{Cause, Fault, GripMode, MotorStop};
@@ -12,7 +13,7 @@ const EVENTS: usize = 32;
 #[derive(Clone, Debug, Default)]
 pub struct Journal {
     frame: u32,
-    ticks: [TickRecord; tenax_hal_shim::channel::FRAMES_PER_SLOW_FRAME as usize],
+    ticks: [TickRecord; FRAMES_PER_SLOW_FRAME as usize],
     samples: SamplesSum,
     events: Deque<Event, EVENTS>,
     events_lost: u16,
@@ -41,9 +42,7 @@ impl Journal {
     }
 
     /// Ticks of the slow frame, and the checksum ([`SamplesSum`]) of their samples.
-    pub fn take_slow(
-        &mut self,
-    ) -> ([TickRecord; tenax_hal_shim::channel::FRAMES_PER_SLOW_FRAME as usize], u32) {
+    pub fn take_slow(&mut self) -> ([TickRecord; FRAMES_PER_SLOW_FRAME as usize], u32) {
         (self.ticks, self.samples.take())
     }
 

@@ -4,8 +4,8 @@ mod force;
 mod select_lines;
 
 use tenax_hal_shim::channel::{
-    ARRAY, CHANNELS, COUNT, FSR, FSR_COUNT, HEAD, MYO_EXTENSOR, MYO_FLEXOR, OPENING, PVDF, PVDF_COUNT, Role,
-    SAMPLE_MAX, SLOW_HZ, STRAIN,
+    ARRAY, CHANNELS, COUNT, FRAMES_PER_SLOW_FRAME, FSR, FSR_COUNT, HEAD, MYO_EXTENSOR, MYO_FLEXOR, OPENING,
+    PVDF, PVDF_COUNT, Role, SAMPLE_MAX, SLOW_HZ, STRAIN, frames,
 };
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::front_end::FSR_REST_MV;
@@ -33,10 +33,9 @@ use crate::strain::Gauges;
 use crate::vibration::quality::PvdfQuality;
 use crate::vibration::sliding::Hand;
 use crate::vibration::{Trust, Vibration, VibrationDetector};
-use tenax_hal_shim::channel::frames;
 
 const WARM_UP_FRAMES: u32 = frames(200);
-const STALE_FRAMES: u32 = tenax_hal_shim::channel::FRAMES_PER_SLOW_FRAME as u32;
+const STALE_FRAMES: u32 = FRAMES_PER_SLOW_FRAME as u32;
 /// Readings that a quadrant may miss: a tick that is always late never reaches [`STALE_FRAMES`].
 const QUADRANT_MISSES: u8 = 2;
 /// Opening since the last closing after which the hand is surely open: at its slowest it has moved 2 cm.

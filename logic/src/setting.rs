@@ -97,30 +97,12 @@ impl Unit<u32> for Ms {
     }
 }
 
-impl Unit<u16> for Number {
-    fn field(value: i32) -> u16 {
-        value.clamp(0, u16::MAX.into()) as u16
+impl<T: TryFrom<i32> + TryInto<i32> + Default> Unit<T> for Number {
+    fn field(value: i32) -> T {
+        value.try_into().unwrap_or_default()
     }
-    fn value(field: u16) -> i32 {
-        field.into()
-    }
-}
-
-impl Unit<u32> for Number {
-    fn field(value: i32) -> u32 {
-        value.unsigned_abs()
-    }
-    fn value(field: u32) -> i32 {
-        field as i32
-    }
-}
-
-impl Unit<i32> for Number {
-    fn field(value: i32) -> i32 {
-        value
-    }
-    fn value(field: i32) -> i32 {
-        field
+    fn value(field: T) -> i32 {
+        field.try_into().unwrap_or_default()
     }
 }
 

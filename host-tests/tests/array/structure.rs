@@ -61,7 +61,6 @@ fn trembling(random: &mut ChaCha8Rng, frames: usize, size: i32) -> Vec<Reading> 
 
 #[test]
 fn the_quiet_level_is_the_noise_and_outlasts_a_slip_and_an_element() {
-    println!("seed 5");
     let mut random = ChaCha8Rng::seed_from_u64(5);
     assert_eq!(structure_of(&trembling(&mut random, 33, 3)).quiet(), u32::MAX, "nothing is known yet");
     let noise = trembling(&mut random, 200, 3);

@@ -30,7 +30,6 @@ fn worst(config: Config, mut input: impl FnMut(usize) -> (Activations<RECEPTORS>
         fixed.learn(&rule, &felt, &codes.map(Some));
         reference.learn(&rates, &t, &codes);
     }
-    println!("{config:?}: weights {of_weights:.1e} of full scale, outputs {of_outputs:.1e}");
     (of_weights, of_outputs)
 }
 

@@ -36,12 +36,6 @@ pub enum Fate {
     Useful = b'U',
 }
 
-impl Fate {
-    fn letter(self) -> char {
-        char::from(self as u8)
-    }
-}
-
 /// Scores of the touch-only outputs in a trial that was not learned from, as parts of its time.
 #[derive(Clone, Copy, Debug)]
 pub struct Said {
@@ -138,7 +132,8 @@ fn map() -> String {
                 let measured = fate(&weights_of(&learned(&config, &lesson)), &trial);
                 let settled = fate(&c.map(|c| fixed_point(&Rates::from(&config), &c)), &trial);
                 let (open, close) = if config == Config::default() { ('[', ']') } else { (' ', ' ') };
-                write!(map, "  {open}{}{}{close}", measured.letter(), settled.letter()).unwrap();
+                write!(map, "  {open}{}{}{close}", char::from(measured as u8), char::from(settled as u8))
+                    .unwrap();
             }
             writeln!(map).unwrap();
         }

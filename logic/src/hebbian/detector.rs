@@ -13,7 +13,6 @@ use tenax_hal_shim::schedule::{Job, slot_of};
 use tenax_hal_shim::wire::{Forces, NETWORK_OUTPUTS, NetworkState, RECEPTORS};
 use tenax_hal_shim::words::{Code, Codes, NoLesson};
 
-use super::balance::Balance;
 use super::noise::Noise;
 use super::pvdf_part::PvdfPart;
 use super::{Activations, FingertipNetwork, Normaliser, NormaliserConfig, Output, Sense, Teacher, snapshot};
@@ -347,4 +346,25 @@ impl HebbianDetector {
 /// Equation 4.
 fn output(sum: i64) -> Output {
     Output::from_bits(sum.clamp(-ONE, ONE) as i32)
+}
+
+const AHEAD_MAX: i16 = 2_000;
+
+/// Lessons of each code less those of its opposite: Hebb's rule lets a constant input learn whichever code was
+/// taught longer.
+#[derive(Clone, Copy, Debug, Default)]
+struct Balance([i16; NETWORK_OUTPUTS]);
+
+impl Balance {
+    fn admit(&mut self, codes: Codes) -> [Option<Code>; NETWORK_OUTPUTS] {
+        let mut admitted = [None; NETWORK_OUTPUTS];
+        for ((ahead, slot), code) in self.0.iter_mut().zip(&mut admitted).zip(codes) {
+            let after = *ahead + code.sign() as i16;
+            if after.abs() <= AHEAD_MAX {
+                *ahead = after;
+                *slot = Some(code);
+            }
+        }
+        admitted
+    }
 }

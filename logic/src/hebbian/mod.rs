@@ -10,7 +10,6 @@
 
 pub mod activations;
 mod arithmetic;
-mod balance;
 pub mod detector;
 pub mod gains;
 pub mod network;
