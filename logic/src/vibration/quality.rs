@@ -72,7 +72,7 @@ impl PvdfQuality {
         for (n, (((health, last), &sample), trust)) in films.enumerate() {
             let last = core::mem::replace(last, sample);
             let in_range = (LIMITS.low..=LIMITS.high).contains(&sample);
-            if in_range && sample != last && !health.lost.is_some() {
+            if in_range && sample != last && health.lost.is_none() {
                 health.was_plain(sample);
                 continue;
             }
