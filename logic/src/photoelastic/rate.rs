@@ -1,5 +1,5 @@
-//! Rate of slip from amplitude and frequency of the ac part: a fit of logarithms to one material (`tenax
-//! calibrate photoelastic`). On another material it is off by a factor.
+//! Rate of slip from amplitude and frequency of the ac part: a fit of logarithms to one material. On another
+//! material it is off by a factor.
 
 use crate::emg::level::{self, LEVEL_Q};
 
