@@ -53,11 +53,11 @@ impl Control {
         let next = frame.sequence.wrapping_add(1);
         self.switches.show(select_of_slot((next % u32::from(FRAMES_PER_SLOW_FRAME)) as u8));
 
-        self.device.button(self.button.is_down());
+        self.device.fingertip.button(self.button.is_down());
         if has_room_for_command(frame) {
             self.take_command();
         }
-        let drive = tenax_control_tick(self.device.fingertip_mut(), frame);
+        let drive = tenax_control_tick(&mut self.device.fingertip, frame);
         self.bridge.drive(drive);
         self.watchdog.feed();
         counts::TICKS.add_one();
@@ -84,9 +84,9 @@ impl Control {
     #[inline(never)]
     fn save(&mut self) {
         self.device.slow_frame_passed();
-        self.button.light(self.device.light());
-        self.device.bridge(self.button.bridge_is_off());
-        self.vibrator.drive(self.device.feedback());
+        self.button.light(self.device.fingertip.light());
+        self.device.fingertip.bridge(self.button.bridge_is_off());
+        self.vibrator.drive(self.device.fingertip.feedback());
         self.slow_frames = self.slow_frames.saturating_add(1);
         if self.slow_frames == LIVED_WELL {
             last_words::lived_well();

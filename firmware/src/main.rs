@@ -52,7 +52,6 @@ use tenax_hal_shim::channel::FRAME_HZ;
 use tenax_hal_shim::motor::MotorBridge;
 use tenax_hal_shim::wire::{ResetCause, Up};
 use tenax_hal_shim::words::Fault;
-use tenax_logic::device::Device;
 use tenax_logic::rescue::{self, Rescue};
 use tenax_logic::restart::{Mark, Start};
 use tenax_logic::store::Erase;
@@ -168,14 +167,14 @@ async fn main(spawner: Spawner) {
     let control = made(|| control::Control::new((bridge, vibrator), switches, button, watchdog));
     control.restore(|device| store::restore(device, &flash, &found));
     if !switched_on {
-        control.restore(Device::was_reset);
+        control.restore(|device| device.fingertip.was_reset());
     }
     if !crystal {
-        control.restore(|device| device.report(Fault::CrystalLost));
+        control.restore(|device| device.fingertip.report(Fault::CrystalLost));
     }
     control.restore(|device| {
         mail::post(device.start(identity::of(cause)));
-        if device.fingertip().config().stream_at_start {
+        if device.fingertip.config().stream_at_start {
             store::restored(&flash, &found, mail::post);
         }
     });

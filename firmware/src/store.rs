@@ -24,7 +24,7 @@ pub fn restore(device: &mut Device, flash: &Flash, found: &Found) {
     let mut buffer = [0; PAYLOAD_BYTES];
     for kept in Kept::ALL {
         if found.is_damaged(kept) {
-            device.report(Fault::RecordDamaged(kept));
+            device.fingertip.report(Fault::RecordDamaged(kept));
         }
         if let Some(payload) = found.read(flash, kept, &mut buffer) {
             device.restore(kept, payload);

@@ -67,7 +67,7 @@ impl Recorded {
             device.restore(*kept, payload);
         }
         if self.identity.reset != ResetCause::PowerOn {
-            device.was_reset();
+            device.fingertip.was_reset();
         }
         device.start(self.identity);
         let frames = self.frames.iter().copied();

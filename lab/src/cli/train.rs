@@ -6,6 +6,7 @@ use std::process::{Command, ExitCode};
 
 use anyhow::{Context, ensure};
 use tenax_frames::tool::{folder, format::Format, out, progress::with_bar, workspace};
+use tenax_logic::array::COVARIANCE_WINDOW;
 use tenax_sim::array::network::{self, Network};
 use tenax_sim::array::{adapt, edges};
 use tenax_sim::labelled::{self, Part, library};
@@ -31,7 +32,7 @@ Examples:
 /// The default file of `tenax dataset`.
 const DATASET: &str = "out/array_dataset.csv";
 /// Files of `--out` that `--ship` copies, and their places.
-const SHIPPED_TO: [(&str, &str); 1] = [("network.rs", "logic/src/array/shipped.rs")];
+const SHIPPED_TO: [(&str, &str); 1] = [("network.in", "logic/src/array/network.in")];
 
 /// Train the force array's slip detector from labelled recordings
 #[derive(Debug, clap::Args)]
@@ -54,7 +55,7 @@ pub struct Args {
     /// How to print the report
     #[arg(long, value_enum, default_value_t = Format::Text)]
     report: Format,
-    /// Copy network and card to logic/src/array/shipped.rs and docs/
+    /// Copy the network to logic/src/array/network.in
     #[arg(long)]
     ship: bool,
 }
@@ -120,6 +121,7 @@ fn train(path: &Path, args: &Args) -> anyhow::Result<[(&'static str, Vec<u8>); 4
     let name = path.display().to_string();
     let recipe = library::choose(path, args.recipe.as_deref())?;
     let features = Recipe::of(&recipe);
+    ensure!(!args.ship || features.window == COVARIANCE_WINDOW, "the firmware has another window");
     let bytes = fs::read(path).with_context(|| format!("{name}: cannot be read"))?;
     let mut recordings = labelled::parse(bytes.as_slice(), &recipe, &name)?;
     recordings.retain(|own| own.part != Some(Part::Test));
@@ -182,7 +184,7 @@ fn train(path: &Path, args: &Args) -> anyhow::Result<[(&'static str, Vec<u8>); 4
         report.data.file, report.data.sha256, report.seed
     );
     Ok([
-        ("network.rs", export::rust(&saved, &features, &about).into_bytes()),
+        ("network.in", export::rust(&saved, &features, &about).into_bytes()),
         (network::FILE, serde_json::to_vec(&saved)?),
         ("model-card.md", report.card().into_bytes()),
         ("report.json", serde_json::to_vec_pretty(&report)?),

@@ -66,15 +66,16 @@ pub fn host_decides(
             said.take(device.command(command));
         }
         device
+            .fingertip
             .button(pressed.iter().any(|at| (at - at.min(&(DEBOUNCE_FRAMES - 1))..=*at).contains(&sequence)));
         device.tick(&frame);
         if frame.slot() == slot_of(Job::Save) {
-            let duty = device.feedback();
+            let duty = device.fingertip.feedback();
             if said.feedback.last().map_or(Duty::default(), |last| last.1) != duty {
                 said.feedback.push((sequence, duty));
             }
         }
-        let fingertip = device.fingertip();
+        let fingertip = &device.fingertip;
         said.slip_and_warning.push([fingertip.slip(), fingertip.incipient()]);
         std::iter::from_fn(|| device.next_message()).for_each(|message| said.take(message));
     }

@@ -77,13 +77,13 @@ fn closed_loop(
     };
     let mut up = Uplink::new(&mut summary, recorder);
     up.post(device.start(Identity::default()));
-    if device.fingertip().config().stream_at_start {
+    if device.fingertip.config().stream_at_start {
         for (kept, payload) in provision.records() {
             up.post(Up::Restored(Restored::of(kept, &payload).expect("it has room for every record")));
         }
     }
     let mut down = Downlink::default();
-    device.fingertip_mut().act_on(match grips {
+    device.fingertip.act_on(match grips {
         Grips::Reflex(detectors) => detectors,
         Grips::Bound | Grips::Constant(_) => DetectorSet::NONE,
     });
@@ -112,13 +112,13 @@ fn closed_loop(
             }
             up.post(answer);
         }
-        device.button(plant.button());
+        device.fingertip.button(plant.button());
         let frame = Frame::from_scans(sequence, &scans);
         drive = device.tick(&frame);
         drive = match grips {
             Grips::Reflex(_) => drive,
-            Grips::Bound => ahead.drive(drive, device.fingertip(), plant.planned()),
-            Grips::Constant(target_n) => ahead.drive(drive, device.fingertip(), plant.closing_to(target_n)),
+            Grips::Bound => ahead.drive(drive, &device.fingertip, plant.planned()),
+            Grips::Constant(target_n) => ahead.drive(drive, &device.fingertip, plant.closing_to(target_n)),
         };
         while let Some(message) = device.next_message() {
             up.post(message);
@@ -135,7 +135,7 @@ fn closed_loop(
         }
         if frame.slot() == slot_of(Job::Save) {
             device.slow_frame_passed();
-            let duty = device.feedback();
+            let duty = device.fingertip.feedback();
             plant.vibrate(duty);
             up.summary().vibrates(sequence, duty);
             if store.is_free()
