@@ -147,49 +147,6 @@ pub trait Plant: Send {
 mod tests {
     use super::*;
 
-    struct Outspoken(Pins);
-
-    impl Plant for Outspoken {
-        fn scan(&mut self, _drive: MotorDrive) -> &Pins {
-            &self.0
-        }
-
-        fn commands(&mut self) -> Vec<Down> {
-            vec![Down::Ping]
-        }
-
-        fn button(&self) -> bool {
-            true
-        }
-
-        fn calibrated(&self) -> Option<Calibrated> {
-            Some(Calibrated::Words([3; 10]))
-        }
-    }
-
-    struct Around<P>(P);
-
-    impl<P: Plant> Plant for Around<P> {
-        fn within(&self) -> Option<&dyn Plant> {
-            Some(&self.0)
-        }
-
-        fn within_mut(&mut self) -> Option<&mut dyn Plant> {
-            Some(&mut self.0)
-        }
-
-        fn scan(&mut self, drive: MotorDrive) -> &Pins {
-            self.0.scan(drive)
-        }
-    }
-
-    #[test]
-    fn a_plant_around_another_answers_as_the_innermost() {
-        let mut around = Around(Around(Outspoken(Pins::default())));
-        assert!(around.button() && around.calibrated().is_some() && !around.trusts_line());
-        assert_eq!(around.frame(0, MotorDrive::Coast).1, [Down::Ping; 4]);
-    }
-
     #[test]
     fn codes_are_rounded_down_and_clipped() {
         let lsb_v = f64::from(REFERENCE_MV) / 1e3 / (f64::from(CODE_MAX) + 1.0);

@@ -1,7 +1,6 @@
 //! Time, and things that happen for a while.
 
 use tenax_hal_shim::channel::{FRAME_HZ, SCAN_HZ};
-use toml::Spanned;
 
 use crate::file::quantity::{Duration, Instant};
 
@@ -16,8 +15,8 @@ pub(crate) struct Span {
 }
 
 impl Span {
-    pub(crate) fn of(at_s: &Spanned<Instant>, for_s: Duration) -> Self {
-        Self::new(at_s.get_ref().get(), for_s.get())
+    pub(crate) fn of(at_s: Instant, for_s: Duration) -> Self {
+        Self::new(at_s.get(), for_s.get())
     }
 
     pub(crate) const fn new(begin_s: f64, for_s: f64) -> Self {

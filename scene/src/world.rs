@@ -83,15 +83,14 @@ impl World {
     /// The scene at its beginning, with one seed for the fingertip's making and one for the noise.
     pub fn seeded(scene: &SceneFile, seeds: Seeds) -> Self {
         let seed = seeds.noise;
-        let task = match &scene.object {
-            Some(object) => Task::Grasp {
+        let task = if let Some(robot) = &scene.robot {
+            Task::Stroke(Box::new(Stroke::new(scene, robot.get_ref())))
+        } else {
+            let object = scene.object.as_ref().expect("a scene has [object] or [robot]");
+            Task::Grasp {
                 grasp: Box::new(Grasp::new(scene, object.get_ref())),
                 hand: Hand::new(&scene.moves, &scene.swing),
                 arm: scene.arm,
-            },
-            None => {
-                let robot = scene.robot.as_ref().map(|robot| robot.get_ref().clone()).unwrap_or_default();
-                Task::Stroke(Box::new(Stroke::new(scene, &robot)))
             }
         };
         Self {
@@ -101,7 +100,7 @@ impl World {
             wearer: Wearer::new(&scene.muscle),
             gripper: Gripper::new(&scene.gripper),
             vibrator: scene.vibrator.as_ref().map(Vibrator::new),
-            jams: scene.jam.iter().map(|jam| Span::of(&jam.at_s, jam.for_s)).collect(),
+            jams: scene.jam.iter().map(|jam| Span::of(jam.at_s, jam.for_s)).collect(),
             task,
             touch: Touch::default(),
             films: Films::new(&scene.pvdf, (&scene.knock, &scene.hum), scene.contact.pitch_mm.get(), seeds),

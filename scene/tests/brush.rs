@@ -38,19 +38,6 @@ fn the_sum_of_the_rings_converges_to_the_cubic_at_second_order() {
 }
 
 #[test]
-fn the_stick_radius_is_the_root_within_a_ring() {
-    let whole_m = PAD.macro_slip_m(NORMAL_N, MU);
-    let rings = f64::from(ELEMENTS.get());
-    let mut patch = BrushPatch::new(PAD, ELEMENTS);
-    for n in 1..ELEMENTS.get() {
-        patch.step(NORMAL_N, PLAIN, whole_m / rings);
-        let s = f64::from(n) / rings;
-        // Between the rings the edge is exact.
-        assert!((patch.stick_radius_part() - closed_form::stick_radius(s)).abs() < 1e-9);
-    }
-}
-
-#[test]
 fn every_ring_lets_go_once_at_even_displacements_and_they_release_the_whole_drop() {
     let whole_m = PAD.macro_slip_m(NORMAL_N, MU);
     const LOOKS: u32 = 24_000;

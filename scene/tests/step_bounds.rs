@@ -1,7 +1,7 @@
 //! The scenes' own step against what has a closed form: Moreau's, with Coulomb's friction as the impulse that stops the motion, and
 //! semi-implicit Euler for everything else (Moreau 1988; Stewart and Trinkle 1996).
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 
 use tenax_scene::bounds;
 use tenax_scene::physics::GRAVITY_M_S2;
@@ -91,43 +91,6 @@ fn an_oscillator_is_stable_inside_its_bound_and_not_outside() {
     assert!((bounds::semi_implicit_oscillator_s(0.2, 2_000.0, 0.0) - 0.02).abs() < 1e-15);
 }
 
-fn on_incline(tan: f64) -> Load {
-    let normal_n = MASS_KG * GRAVITY_M_S2 / (1.0 + tan * tan).sqrt();
-    Load { force_n: normal_n * tan, normal_n, surface_m_s: 0.0 }
-}
-
-#[test]
-fn a_block_slides_from_mu_s_on_and_then_as_mu_d_lets_it() {
-    const TILT_PER_S: f64 = 0.1;
-    let mut onset = 0.0;
-    run(
-        State::default(),
-        SHIPPED_S,
-        10.0,
-        |t_s, _, _| on_incline(TILT_PER_S * t_s),
-        |state| {
-            onset = TILT_PER_S * state.t_s;
-            state.speed_m_s < 1e-3
-        },
-    );
-    within(1e-3, onset, FRICTION.mu_s);
-    let (tan, mut last) = (0.6, (0.0, 0.0));
-    run(
-        State::default(),
-        SHIPPED_S,
-        1.0,
-        |_, _, _| on_incline(tan),
-        |state| {
-            last = (state.speed_m_s, state.position_m);
-            true
-        },
-    );
-    // After 1 s: g (sin - mu_d cos), and half of it.
-    let speed_m_s = GRAVITY_M_S2 * (tan - FRICTION.mu_d) / (1.0 + tan * tan).sqrt();
-    within(1e-3, last.0, speed_m_s);
-    within(1e-3, last.1, 0.5 * speed_m_s);
-}
-
 #[test]
 fn stick_slip_has_the_amplitude_and_the_period_of_its_limit_cycle() {
     const STIFFNESS_N_PER_M: f64 = 1_000.0;
@@ -163,41 +126,6 @@ fn stick_slip_has_the_amplitude_and_the_period_of_its_limit_cycle() {
     let (first_s, last_s) = (crossings[0], crossings[crossings.len() - 1]);
     within(0.01, (high_m - low_m) / 2.0, amplitude_m);
     within(0.01, (last_s - first_s) / (crossings.len() - 1) as f64, period_s);
-}
-
-/// An object falls on the table's undamped mat and rises, under a friction that never holds it: depth and height follow from the
-/// energies.
-#[test]
-fn an_impact_has_the_depth_and_the_height_of_its_energies() {
-    const MAT_N_PER_M: f64 = 2_000.0;
-    const NORMAL_N: f64 = 1.5;
-    const HEIGHT_M: f64 = 0.005;
-    const SPEED_M_S: f64 = -0.5;
-    let friction_n = FRICTION.mu_d * NORMAL_N;
-    let falling_n = MASS_KG * GRAVITY_M_S2 - friction_n;
-    // Twice the kinetic energy at the mat, J.
-    let vis_viva_j = MASS_KG * SPEED_M_S * SPEED_M_S + 2.0 * falling_n * HEIGHT_M;
-    let depth_m = (falling_n + (falling_n * falling_n + MAT_N_PER_M * vis_viva_j).sqrt()) / MAT_N_PER_M;
-    let left_j = vis_viva_j - 4.0 * friction_n * depth_m;
-    let height_m = left_j / (2.0 * (MASS_KG * GRAVITY_M_S2 + friction_n));
-
-    let start = State { position_m: HEIGHT_M, speed_m_s: SPEED_M_S, ..State::default() };
-    let load = |_, position_m: f64, _| Load {
-        force_n: MAT_N_PER_M * (-position_m).max(0.0) - MASS_KG * GRAVITY_M_S2,
-        normal_n: NORMAL_N,
-        surface_m_s: 0.0,
-    };
-    let (mut lowest_m, mut then_highest_m) = (f64::INFINITY, 0.0_f64);
-    // A whole swing of the mat is longer than any half with a load on it.
-    run(start, SHIPPED_S, 0.1 + TAU * (MASS_KG / MAT_N_PER_M).sqrt(), load, |state| {
-        if state.position_m < lowest_m {
-            (lowest_m, then_highest_m) = (state.position_m, state.position_m);
-        }
-        then_highest_m = then_highest_m.max(state.position_m);
-        true
-    });
-    within(0.01, -lowest_m, depth_m);
-    within(0.01, then_highest_m, height_m);
 }
 
 /// A block that is loaded gently to 60 % of the friction that it has and shaken by 15 %: never as much as sliding takes. A model

@@ -2,7 +2,7 @@
 
 use tenax_scene::physics::stribeck::{BLOCK_N, METAL, Slider, Stribeck};
 use tenax_scene::sensor::photoelastic::HEAD_STRIP;
-use tenax_scene::stepping::{SHIPPED_S, SelfExcited};
+use tenax_scene::stepping::growth_per_s;
 
 use super::rate::{Material, Rig, rig_of};
 
@@ -35,9 +35,8 @@ pub fn theory_mm_s(drop: f64) -> Option<f64> {
 
 /// Whether a small vibration about even sliding grows.
 fn grows(drop: f64, rate_mm_s: f64) -> bool {
-    let scene = SelfExcited { slider: slider(drop), normal_n: LOAD_N, surface_m_s: rate_mm_s / 1e3 };
     // What does not swing near the boundary creeps back.
-    scene.measured(SHIPPED_S).is_some_and(|measured| measured.growth_per_s > 0.0)
+    growth_per_s(slider(drop), LOAD_N, rate_mm_s / 1e3).is_some_and(|growth_per_s| growth_per_s > 0.0)
 }
 
 /// The speed below which it vibrates by itself as the scene's strip does, mm/s, by halving.

@@ -3,6 +3,8 @@
 use serde::Deserialize;
 use tenax_hal_shim::channel::{CHANNELS, by_name};
 
+use super::near;
+
 /// Index of a channel in the channel map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(try_from = "String")]
@@ -14,8 +16,6 @@ pub struct NoSuchChannel {
     name: String,
     near: String,
 }
-
-const OFFERED: usize = 4;
 
 impl ChannelName {
     /// Index in [`CHANNELS`].
@@ -33,9 +33,8 @@ impl TryFrom<String> for ChannelName {
 
     fn try_from(name: String) -> Result<Self, NoSuchChannel> {
         by_name(&name).map(Self).ok_or_else(|| {
-            let mut near = CHANNELS.map(|channel| channel.name);
-            near.sort_by(|a, b| strsim::jaro_winkler(b, &name).total_cmp(&strsim::jaro_winkler(a, &name)));
-            NoSuchChannel { near: near[..OFFERED].join(", "), name }
+            let near = near(&name, CHANNELS.iter().map(|channel| channel.name));
+            NoSuchChannel { near, name }
         })
     }
 }

@@ -50,8 +50,8 @@ impl Surface {
         let patches = wet.iter().map(|wet| {
             let ramp_s = wet.ramp_ms.get() / 1e3;
             Patch {
-                wetting: Span::new(wet.at_s.get_ref().get(), ramp_s),
-                drying: Span::new(wet.until_s.as_ref().map_or(f64::INFINITY, |s| s.get_ref().get()), ramp_s),
+                wetting: Span::new(wet.at_s.get(), ramp_s),
+                drying: Span::new(wet.until_s.as_ref().map_or(f64::INFINITY, |s| s.get()), ramp_s),
                 friction: Friction { mu_s: wet.mu_s.get(), mu_d: wet.mu_d.get_ref().get() },
             }
         });

@@ -63,7 +63,7 @@ impl Grasp {
         let fills = scene
             .fill
             .iter()
-            .map(|fill| (Span::of(&fill.at_s, fill.for_s), fill.add_kg.get_ref().get()))
+            .map(|fill| (Span::of(fill.at_s, fill.for_s), fill.add_kg.get_ref().get()))
             .collect();
         Self {
             empty_kg,
@@ -82,7 +82,7 @@ impl Grasp {
             mat_ns_per_m,
             rest_m: -empty_kg * GRAVITY_M_S2 / mat_n_per_m,
             contact: Level::new(&scene.contact),
-            mu_per_decade: scene.contact.mu_per_decade(),
+            mu_per_decade: scene.contact.mu_per_decade.get(),
             sticks: true,
             shear_part: 0.0,
             in_hand: true,

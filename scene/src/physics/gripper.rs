@@ -139,6 +139,10 @@ mod tests {
     const WIDTH_MM: f64 = 70.0;
     const STIFFNESS_N_PER_MM: f64 = 3.0;
 
+    fn hand() -> sections::Gripper {
+        crate::file::plain("", "").gripper
+    }
+
     fn run(gripper: &mut Gripper, drive: MotorDrive, for_s: f64) {
         for _ in 0..(for_s / STEP_S).round() as u32 {
             let grip_n = gripper.grip_n(WIDTH_MM, STIFFNESS_N_PER_MM);
@@ -148,7 +152,7 @@ mod tests {
 
     #[test]
     fn it_moves_one_dead_time_late_at_both_ends() {
-        let mut gripper = Gripper::new(&sections::Gripper::default());
+        let mut gripper = Gripper::new(&hand());
         let open_mm = gripper.opening_mm;
         run(&mut gripper, MotorDrive::Close(Duty::per_mille(500)), 0.030);
         assert_eq!(gripper.opening_mm, open_mm);
@@ -160,7 +164,7 @@ mod tests {
 
     #[test]
     fn it_stalls_at_its_part_of_140_n_and_a_load_never_opens_it() {
-        let mut gripper = Gripper::new(&sections::Gripper::default());
+        let mut gripper = Gripper::new(&hand());
         run(&mut gripper, MotorDrive::Close(Duty::per_mille(500)), 20.0);
         run(&mut gripper, MotorDrive::Coast, 0.1);
         let grip_n = gripper.grip_n(WIDTH_MM, STIFFNESS_N_PER_MM);
@@ -182,10 +186,7 @@ mod tests {
         };
         let half = Duty::per_mille(500);
         for step_mm in [0.0, 0.5] {
-            let mut gripper = Gripper::new(&sections::Gripper {
-                step_mm: Play::of(step_mm),
-                ..sections::Gripper::default()
-            });
+            let mut gripper = Gripper::new(&sections::Gripper { step_mm: Play::of(step_mm), ..hand() });
             run(&mut gripper, MotorDrive::Open(Duty::FULL), 0.05);
             assert_eq!(gripper.current_part, 0.0, "the control: it moves");
             gripper.is_jammed = true;
@@ -200,7 +201,7 @@ mod tests {
 
     #[test]
     fn a_position_controlled_one_stands_on_whole_steps_only() {
-        let stepped = sections::Gripper { step_mm: Play::of(0.5), ..sections::Gripper::default() };
+        let stepped = sections::Gripper { step_mm: Play::of(0.5), ..hand() };
         let mut gripper = Gripper::new(&stepped);
         for _ in 0..40 {
             run(&mut gripper, MotorDrive::Close(Duty::per_mille(50)), 0.033);

@@ -26,12 +26,12 @@ impl Hand {
         let moves = moves.iter().map(|step| {
             let by_m = step.to_mm.get() / 1e3 - from_m;
             from_m += by_m;
-            (Span::of(&step.at_s, step.for_s), by_m)
+            (Span::of(step.at_s, step.for_s), by_m)
         });
         let moves = moves.collect();
         let swings = swings.iter().map(|swing| {
             let for_s = f64::from(swing.cycles.get()) / swing.rate_hz.get();
-            (Span::new(swing.at_s.get_ref().get(), for_s), swing.clone())
+            (Span::new(swing.at_s.get(), for_s), swing.clone())
         });
         Self {
             moves,

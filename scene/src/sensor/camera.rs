@@ -92,8 +92,10 @@ mod tests {
     use super::*;
 
     fn words(hand_mm_s: f64, object_mm_s: f64) -> Vec<Seen> {
-        let mut eye =
-            Eye::new(&Camera { jitter_px: crate::file::quantity::Part::of(0.0), ..Camera::default() }, 1);
+        let mut eye = Eye::new(
+            &Camera { jitter_px: crate::file::quantity::Part::of(0.0), ..crate::file::plain("", "").camera },
+            1,
+        );
         (0..8_000)
             .filter_map(|n| {
                 let t_s = f64::from(n) / 8e3;

@@ -56,7 +56,7 @@ mod tests {
 
     #[test]
     fn unloading_reads_more_than_loading_at_the_same_force() {
-        let mut quadrants = Quadrants::new(&Fsr::default());
+        let mut quadrants = Quadrants::new(&crate::file::plain("", "").fsr);
         let loading = settled(&mut quadrants, 5.0);
         settled(&mut quadrants, 20.0);
         let unloading = settled(&mut quadrants, 5.0);
@@ -65,7 +65,7 @@ mod tests {
 
     #[test]
     fn a_lasting_load_creeps_up_and_the_unloaded_sensor_comes_back() {
-        let mut quadrants = Quadrants::new(&Fsr::default());
+        let mut quadrants = Quadrants::new(&crate::file::plain("", "").fsr);
         let first = settled(&mut quadrants, 5.0);
         (0..2_000 * 20).for_each(|_| _ = settled(&mut quadrants, 5.0));
         let later = settled(&mut quadrants, 5.0);

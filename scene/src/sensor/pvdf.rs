@@ -84,7 +84,7 @@ impl Films {
         Self {
             parameters: parameters.clone(),
             knocks: knocks.to_vec(),
-            hums: hums.iter().map(|hum| (Span::of(&hum.at_s, hum.for_s), hum.clone())).collect(),
+            hums: hums.iter().map(|hum| (Span::of(hum.at_s, hum.for_s), hum.clone())).collect(),
             pitch_m: pitch_mm / 1e3,
             films,
             gains,
@@ -185,7 +185,7 @@ impl Films {
 
 impl Film {
     fn hears(&self, knock: &Knock) -> f64 {
-        let comes_from = (knock.at_s.get_ref().get() * 7.389).fract();
+        let comes_from = (knock.at_s.get() * 7.389).fract();
         1.0 + knock.uneven.get() * libm::cos(TAU * (self.phase - comes_from))
     }
 }
@@ -201,14 +201,14 @@ fn hum_mv(hum: &Hum, t_s: f64) -> f64 {
 
 fn rings(knock: &Knock, t_s: f64) -> bool {
     let decay_s = knock.decay_ms.get() / 1e3;
-    (0.0..KNOCK_DECAYS * decay_s).contains(&(t_s - knock.at_s.get_ref().get()))
+    (0.0..KNOCK_DECAYS * decay_s).contains(&(t_s - knock.at_s.get()))
 }
 
 pub(super) fn ring_mv(knock: &Knock, t_s: f64, phase: f64) -> f64 {
     if !rings(knock, t_s) {
         return 0.0;
     }
-    let since_s = t_s - knock.at_s.get_ref().get();
+    let since_s = t_s - knock.at_s.get();
     let decay_s = knock.decay_ms.get() / 1e3;
     let ring = libm::sin(TAU * (knock.ring_hz.get() * since_s + phase));
     knock.peak_mv.get() * libm::exp(-since_s / decay_s) * ring
@@ -220,7 +220,7 @@ mod tests {
     use crate::file::quantity::Part;
 
     fn made(film_decades: f64, making: u64) -> Films {
-        let parameters = Pvdf { film_decades: Part::of(film_decades), ..Pvdf::default() };
+        let parameters = Pvdf { film_decades: Part::of(film_decades), ..crate::file::plain("", "").pvdf };
         Films::new(&parameters, (&[], &[]), 1.0, Seeds { making, noise: 1 })
     }
 

@@ -94,7 +94,7 @@ mod tests {
     fn quiet() -> Strain {
         use crate::file::quantity::Millivolts;
         let off = Millivolts::of(0.0);
-        Strain { noise_mv: off, offset_mv: off, drift_mv_per_min: off, ..Strain::default() }
+        Strain { noise_mv: off, offset_mv: off, drift_mv_per_min: off, ..crate::file::plain("", "").strain }
     }
 
     fn above_rest_mv(gauges: &mut Gauges, touch: Touch) -> [f64; STRAIN_COUNT] {
@@ -123,7 +123,8 @@ mod tests {
         let more = later[loudest] / first[loudest];
         assert!((1.015..1.025).contains(&more), "{more} for a creep of 0.02");
 
-        let drifts = Strain { drift_mv_per_min: Strain::default().drift_mv_per_min, ..quiet() };
+        let drifts =
+            Strain { drift_mv_per_min: crate::file::plain("", "").strain.drift_mv_per_min, ..quiet() };
         let mut gauges = Gauges::new(&drifts, 3.into());
         (0..2_000 * 60).for_each(|_| _ = gauges.step(&Touch::default()));
         let most = above_rest_mv(&mut gauges, Touch::default())

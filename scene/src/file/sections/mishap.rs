@@ -12,7 +12,7 @@ use crate::file::quantity::{
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Knock {
-    pub at_s: Spanned<Instant>,
+    pub at_s: Instant,
     pub peak_mv: Millivolts,
     pub ring_hz: RingHertz,
     pub decay_ms: Milliseconds,
@@ -30,7 +30,7 @@ impl Knock {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Hum {
-    pub at_s: Spanned<Instant>,
+    pub at_s: Instant,
     pub for_s: Duration,
     pub peak_mv: Millivolts,
     pub hum_hz: Hertz,
@@ -49,7 +49,7 @@ pub struct Vibrator {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ElectrodeLift {
-    pub at_s: Spanned<Instant>,
+    pub at_s: Instant,
     pub for_s: Duration,
     pub channel: Spanned<ChannelName>,
     pub pickup_mv: Millivolts,
@@ -59,7 +59,7 @@ pub struct ElectrodeLift {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Jam {
-    pub at_s: Spanned<Instant>,
+    pub at_s: Instant,
     pub for_s: Duration,
 }
 
@@ -88,8 +88,8 @@ pub enum FaultKind {
 #[serde(deny_unknown_fields)]
 pub struct SensorFault {
     /// 0 is before the hand is switched on.
-    pub at_s: Spanned<Instant>,
-    pub until_s: Option<Spanned<Instant>>,
+    pub at_s: Instant,
+    pub until_s: Option<Instant>,
     pub channel: Spanned<ChannelName>,
     pub kind: FaultKind,
     pub press_n: Option<Spanned<Newtons>>,

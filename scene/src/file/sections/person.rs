@@ -18,7 +18,7 @@ pub enum Intent {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Muscle {
-    pub at_s: Spanned<Instant>,
+    pub at_s: Instant,
     pub for_s: Duration,
     pub intent: Intent,
     pub level_mv: Millivolts,
@@ -70,7 +70,7 @@ impl TryFrom<String> for CommandKind {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Command {
-    pub at_s: Spanned<Instant>,
+    pub at_s: Instant,
     pub kind: Spanned<CommandKind>,
     pub value: Option<Spanned<i32>>,
     pub duty_permille: Option<Spanned<u16>>,

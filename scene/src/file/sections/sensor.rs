@@ -9,7 +9,7 @@ use crate::file::quantity::{
 
 /// The PVDF films. Voltages are at the film; the front end multiplies them by `gain`.
 #[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields, default)]
+#[serde(deny_unknown_fields)]
 pub struct Pvdf {
     pub gain: Gain,
     pub spread: Part,
@@ -33,7 +33,7 @@ pub struct Pvdf {
 }
 
 #[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields, default)]
+#[serde(deny_unknown_fields)]
 pub struct Fsr {
     pub hysteresis: Part,
     pub creep: Part,
@@ -41,7 +41,7 @@ pub struct Fsr {
 }
 
 #[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields, default)]
+#[serde(deny_unknown_fields)]
 pub struct Myo {
     /// Rise of the envelope from 10 to 90 %.
     pub rise_ms: Milliseconds,
@@ -55,7 +55,7 @@ pub struct Myo {
 }
 
 #[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields, default)]
+#[serde(deny_unknown_fields)]
 pub struct Strain {
     pub normal_mv_per_n: Gain,
     pub shear_mv_per_n: Gain,
@@ -69,7 +69,7 @@ pub struct Strain {
 }
 
 #[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields, default)]
+#[serde(deny_unknown_fields)]
 pub struct Array {
     pub mv_per_n: Gain,
     pub spread: Part,
@@ -90,7 +90,7 @@ pub struct Array {
 
 /// The camera behind a clear skin, as the summary that its computer sends.
 #[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields, default)]
+#[serde(deny_unknown_fields)]
 pub struct Skin {
     pub rate_hz: Hertz,
     pub delay_ms: DeadTime,
@@ -106,7 +106,7 @@ pub struct Skin {
 }
 
 #[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields, default)]
+#[serde(deny_unknown_fields)]
 pub struct Camera {
     pub pixel_mm: Millimetres,
     pub rate_hz: Hertz,
@@ -118,7 +118,7 @@ pub struct Camera {
 
 /// A photoelastic head in the place of PVDF film 12 (Dubey 2006). The board has to be told: `head-photoelastic-flag`.
 #[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields, default)]
+#[serde(deny_unknown_fields)]
 pub struct Photoelastic {
     pub strip: bool,
     pub mu_s: Mu,

@@ -10,65 +10,36 @@ use crate::file::quantity::{
     Millimetres, Milliseconds, Mu, Newtons, NewtonsMax, Part, Play, Pulling, Speed, Stiffness, Velocity,
 };
 
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Level {
     /// Rigid Coulomb friction.
-    #[default]
     L0,
+    /// A patch of bristles.
     L1,
-    L2,
 }
 
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Contact {
-    #[serde(default)]
     pub level: Level,
     pub mu_s: Mu,
     /// Dynamic friction, at most `mu_s`.
     pub mu_d: Spanned<Mu>,
     pub pad_length_mm: Millimetres,
     pub pitch_mm: Millimetres,
-    pub mu_per_decade: Option<Spanned<Part>>,
-    #[serde(default = "Contact::default_radius_mm")]
+    pub mu_per_decade: Part,
     pub patch_radius_mm: Millimetres,
-    pub skin_n_per_mm: Option<Spanned<Stiffness>>,
-    pub skin_ms: Option<Spanned<Milliseconds>>,
-    pub stribeck_mm_s: Option<Spanned<Speed>>,
-}
-
-impl Contact {
-    /// Assumed: a thumb's width of flattened rubber.
-    const fn default_radius_mm() -> Millimetres {
-        Millimetres::of(5.0)
-    }
-
-    pub fn skin_n_per_mm(&self) -> Stiffness {
-        // The finger on the friction rig has 1.9 N/mm (`scenes/rig.toml`); silicone rubber is taken as the same.
-        self.skin_n_per_mm.as_ref().map_or(Stiffness::of(2.0), |skin| *skin.get_ref())
-    }
-
-    pub fn skin_ms(&self) -> Milliseconds {
-        // Assumed: rubber that rings once.
-        self.skin_ms.as_ref().map_or(Milliseconds::of(3.0), |skin| *skin.get_ref())
-    }
-
-    pub fn mu_per_decade(&self) -> f64 {
-        self.mu_per_decade.as_ref().map_or(0.0, |part| part.get_ref().get())
-    }
-
-    pub fn stribeck_mm_s(&self) -> Speed {
-        // Assumed, as the strip's in `physics::stribeck`.
-        self.stribeck_mm_s.as_ref().map_or(Speed::of(3.0), |speed| *speed.get_ref())
-    }
+    /// Stiffness and damping of a patch (`l1`).
+    pub skin_n_per_mm: Stiffness,
+    pub skin_ms: Milliseconds,
 }
 
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Wet {
-    pub at_s: Spanned<Instant>,
-    pub until_s: Option<Spanned<Instant>>,
+    pub at_s: Instant,
+    pub until_s: Option<Instant>,
     pub ramp_ms: Milliseconds,
     pub mu_s: Mu,
     /// Dynamic friction while it lasts, at most `mu_s`.
@@ -94,7 +65,7 @@ pub struct Pitch {
 }
 
 #[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields, default)]
+#[serde(deny_unknown_fields)]
 pub struct Table {
     pub mat_n_per_mm: Stiffness,
     pub damping: Damping,
@@ -103,13 +74,13 @@ pub struct Table {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Fill {
-    pub at_s: Spanned<Instant>,
+    pub at_s: Instant,
     pub for_s: Duration,
     pub add_kg: Spanned<KilogramsAdded>,
 }
 
 #[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields, default)]
+#[serde(deny_unknown_fields)]
 pub struct Gripper {
     pub speed_mm_s: Speed,
     pub force_n: NewtonsMax,
@@ -120,10 +91,9 @@ pub struct Gripper {
     pub step_mm: Play,
 }
 
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Arm {
-    #[default]
     Person,
     /// A robot, which goes on; the fingers may slip along an object on the table, and that is slip (Tada 2006, figure 5).
     Robot,
@@ -141,7 +111,7 @@ impl Arm {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Move {
-    pub at_s: Spanned<Instant>,
+    pub at_s: Instant,
     pub for_s: Duration,
     pub to_mm: Height,
 }
@@ -149,14 +119,14 @@ pub struct Move {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Swing {
-    pub at_s: Spanned<Instant>,
+    pub at_s: Instant,
     pub cycles: NonZeroU8,
     pub rate_hz: Hertz,
     pub peak_m_s2: Acceleration,
 }
 
 #[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields, default)]
+#[serde(deny_unknown_fields)]
 pub struct Robot {
     pub probe_kg: Kilograms,
     pub stiffness_n_per_mm: Stiffness,
@@ -167,7 +137,7 @@ pub struct Robot {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Press {
-    pub at_s: Spanned<Instant>,
+    pub at_s: Instant,
     pub for_s: Duration,
     pub load_n: Newtons,
 }
@@ -175,7 +145,7 @@ pub struct Press {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Sweep {
-    pub at_s: Spanned<Instant>,
+    pub at_s: Instant,
     pub for_s: Duration,
     pub speed_mm_s: Velocity,
 }
@@ -183,7 +153,7 @@ pub struct Sweep {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Pull {
-    pub at_s: Spanned<Instant>,
+    pub at_s: Instant,
     pub for_s: Duration,
     pub force_n: Pulling,
     pub ramp_ms: Milliseconds,
