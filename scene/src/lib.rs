@@ -31,7 +31,6 @@
 
 pub mod act;
 pub mod bound;
-pub mod bounds;
 pub mod builtin;
 mod commands;
 pub mod file;

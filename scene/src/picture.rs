@@ -270,39 +270,3 @@ impl Session {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn options(seed: u64) -> Options {
-        Options { seed, rate_hz: 30.0, fisheye: true }
-    }
-
-    #[test]
-    fn a_marker_is_dark_where_the_truth_says() {
-        let mut session = Session::new(options(3));
-        let mut bytes = vec![0; 3 * PIXELS];
-        for _ in 0..4 {
-            let truth = session.picture(&mut bytes).unwrap();
-            assert!(truth.markers.len() >= 15, "{} markers", truth.markers.len());
-            for ((x, y), rest) in &truth.markers {
-                assert_eq!((*x, *y), *rest, "nothing touches the skin yet");
-                assert!(bytes[y.round() as usize * WIDTH + x.round() as usize] < 70);
-            }
-        }
-    }
-
-    #[test]
-    fn a_story_has_an_end_and_all_that_it_tells() {
-        let mut session = Session::new(Options { rate_hz: 5.0, ..options(4) });
-        let mut bytes = vec![0; 3 * PIXELS];
-        let truths: Vec<Truth> = std::iter::from_fn(|| session.picture(&mut bytes)).collect();
-        assert_eq!(truths.len(), 50);
-        assert!(
-            truths.iter().any(|truth| truth.slides)
-                && truths.iter().any(|truth| truth.gripped && !truth.slides)
-        );
-        assert!(!truths[0].in_view && truths[20].in_view && !truths[49].in_view);
-    }
-}

@@ -27,7 +27,7 @@ use crate::sensor::camera::{Eye, Seen};
 use crate::sensor::converter::Converter;
 use crate::sensor::fault::Faults;
 use crate::sensor::fsr::Quadrants;
-use crate::sensor::hand;
+use crate::sensor::hand_v;
 use crate::sensor::myo::Envelopes;
 use crate::sensor::photoelastic::Head;
 use crate::sensor::pvdf::Films;
@@ -170,7 +170,7 @@ impl World {
         let shakes = Shakes { t_s, released_n, motor_speed: self.gripper.speed_part() };
         pins_v[ARRAY..MYO_FLEXOR].copy_from_slice(&self.elements.step(&self.touch, shakes));
         pins_v[MYO_FLEXOR..OPENING].copy_from_slice(&self.envelopes.step(t_s, effort));
-        pins_v[OPENING..COUNT].copy_from_slice(&hand::pins_v(&self.gripper));
+        pins_v[OPENING..COUNT].copy_from_slice(&hand_v(&self.gripper));
         self.truth.wearer(t_s, effort.intent, pins_v);
     }
 

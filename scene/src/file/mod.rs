@@ -1,7 +1,6 @@
 //! Scene files: TOML in, a checked [`SceneFile`] out, or one message that says where and what is allowed.
 
 mod base;
-mod channel;
 mod check;
 mod happening;
 pub(crate) mod quantity;

@@ -198,17 +198,4 @@ mod tests {
             blocked(&mut gripper, MotorDrive::Open(half), 0.25);
         }
     }
-
-    #[test]
-    fn a_position_controlled_one_stands_on_whole_steps_only() {
-        let stepped = sections::Gripper { step_mm: Play::of(0.5), ..hand() };
-        let mut gripper = Gripper::new(&stepped);
-        for _ in 0..40 {
-            run(&mut gripper, MotorDrive::Close(Duty::per_mille(50)), 0.033);
-            run(&mut gripper, MotorDrive::Coast, 0.1);
-            let steps = gripper.opening_mm / 0.5;
-            assert!((steps - steps.round()).abs() < 1e-9, "{} mm", gripper.opening_mm);
-        }
-        assert!(gripper.opening_mm < 85.0);
-    }
 }

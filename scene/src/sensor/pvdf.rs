@@ -213,35 +213,3 @@ pub(super) fn ring_mv(knock: &Knock, t_s: f64, phase: f64) -> f64 {
     let ring = libm::sin(TAU * (knock.ring_hz.get() * since_s + phase));
     knock.peak_mv.get() * libm::exp(-since_s / decay_s) * ring
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::file::quantity::Part;
-
-    fn made(film_decades: f64, making: u64) -> Films {
-        let parameters = Pvdf { film_decades: Part::of(film_decades), ..crate::file::plain("", "").pvdf };
-        Films::new(&parameters, (&[], &[]), 1.0, Seeds { making, noise: 1 })
-    }
-
-    #[test]
-    fn gains_and_noises_are_drawn_over_the_decade_and_nothing_else_is() {
-        let (mut widest, mut together) = (0.0_f64, 0.0);
-        for seed in 0..50 {
-            let (alike, drawn) = (made(0.0, seed), made(1.0, seed));
-            assert_eq!(alike.noises, [1.0; PVDF_COUNT], "seed {seed}");
-            let apart: [f64; PVDF_COUNT] =
-                std::array::from_fn(|n| libm::log10(drawn.gains[n] / alike.gains[n]));
-            let noisy = drawn.noises.map(libm::log10);
-            assert!(apart.iter().chain(&noisy).all(|decades| decades.abs() <= 0.5), "seed {seed}");
-            let ends = apart.iter().fold([0.0_f64; 2], |[low, high], &at| [low.min(at), high.max(at)]);
-            widest = widest.max(ends[1] - ends[0]);
-            together += apart.iter().zip(&noisy).map(|(gain, noise)| gain * noise).sum::<f64>();
-            let phases = |films: &Films| films.films.map(|film| film.phase);
-            assert_eq!(phases(&alike), phases(&drawn), "seed {seed}");
-        }
-        assert!(widest > 0.9, "{widest} decades");
-        // A loud film is no noisier than another: 600 products of variance 1/144 have a sum with a deviation of 2.0.
-        assert!(together.abs() < 8.0, "{together}");
-    }
-}

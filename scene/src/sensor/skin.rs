@@ -138,7 +138,6 @@ impl SkinCamera {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::file::quantity::{Gain, Part};
 
     fn plain_skin() -> Skin {
         crate::file::plain("", "").skin.expect("it has one")
@@ -169,17 +168,6 @@ mod tests {
         assert!(views.iter().all(|view| view.angle_ddeg.is_some_and(|angle| (angle - 57).abs() < 30)));
         let delay_ms = plain_skin().delay_ms.get();
         assert!(views.iter().all(|view| (f64::from(view.age_ms) - delay_ms).abs() <= 1.0));
-    }
-
-    #[test]
-    fn as_many_pictures_are_wrong_as_asked_for_and_in_bursts() {
-        let parameters = Skin { wrong_part: Part::of(0.05), wrong_pictures: Gain::of(4.0), ..plain_skin() };
-        let mut camera = SkinCamera::new(&parameters, 5.0, 7);
-        let wrong: Vec<bool> = (0..40_000).map(|_| camera.goes_wrong().is_some()).collect();
-        let part = wrong.iter().filter(|wrong| **wrong).count() as f64 / wrong.len() as f64;
-        let bursts = wrong.windows(2).filter(|two| !two[0] && two[1]).count() as f64;
-        assert!((part - 0.05).abs() < 0.01, "{part}");
-        assert!((part * wrong.len() as f64 / bursts - 4.0).abs() < 0.5);
     }
 
     #[test]
