@@ -63,7 +63,6 @@ impl DetectorSet {
         Self(1 << id as u8)
     }
 
-    /// This set with `id` added (`is_in`) or removed.
     pub const fn with(self, id: DetectorId, is_in: bool) -> Self {
         let bit = 1 << id as u8;
         Self(if is_in { self.0 | bit } else { self.0 & !bit })
@@ -118,27 +117,22 @@ pub enum Direction {
     Up,
 }
 
-/// State of a detector's input.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum DetectorHealth {
     /// The detector does not work yet: its windows fill, or it has not seen the finger unloaded.
     #[default]
     Starting,
     Working,
-    /// The detector's sensors give no valid readings.
     Blind,
 }
 
-/// A detector's last conclusion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Evidence {
     pub slip: bool,
-    /// The object is about to slip.
     pub incipient: bool,
     /// Confidence, 0 to 1000 per mille; 500 at the threshold.
     pub confidence_permille: u16,
     pub direction: Direction,
-    /// Sequence number of the frame in which the detector decided this.
     pub decided_at: u32,
     pub health: DetectorHealth,
     /// The number that is compared with the threshold: the envelope (S1, 14-bit samples), Ft/Fn (S2, per mille), the
@@ -147,7 +141,6 @@ pub struct Evidence {
 }
 
 impl Evidence {
-    /// Whether the detector reports slip or a warning.
     pub const fn says(&self) -> bool {
         self.slip || self.incipient
     }
