@@ -31,7 +31,6 @@ pub struct Bridge {
 }
 
 impl Bridge {
-    /// Takes the timer and the pins; neither side is driven.
     pub fn new(_timer: Peri<'static, TIM1>, _close: Peri<'static, PA8>, _open: Peri<'static, PA9>) -> Self {
         pac::RCC.apb2enr().modify(|w| w.set_tim1en(true));
         let timer = pac::TIM1;
@@ -75,7 +74,6 @@ impl Bridge {
     }
 }
 
-/// Drives a side for so many ticks of each period.
 fn compare<const SIDE: usize>(ticks: u16) {
     pac::TIM1.ccr(SIDE).write(|w| w.set_ccr(ticks));
 }

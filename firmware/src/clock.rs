@@ -8,7 +8,6 @@ use embassy_stm32::pac::{DBGMCU, FLASH, PWR, RCC};
 
 /// Clock of AHB and all timers, Hz (RM0383, figure 12): a scan period is a whole number of its ticks and of microseconds.
 pub const CORE_HZ: u32 = 100_000_000;
-/// Clock of APB1, Hz.
 pub const APB1_HZ: u32 = CORE_HZ / 2;
 
 /// Lets the flash fetch ahead and cache instructions: at 100 MHz it has three wait states, which the chip otherwise pays
@@ -27,7 +26,6 @@ const LOOK_CYCLES: u32 = 1_600;
 const LOOKS: u32 = 200;
 const LOOKS_SUPPLIED: u32 = 3_000;
 
-/// Waits for the crystal's clock; false if it does not come.
 pub fn has_crystal(was_off: bool) -> bool {
     RCC.cr().modify(|w| {
         w.set_hsebyp(true);

@@ -21,11 +21,9 @@ unsafe extern "C" {
     static __store_start: u32;
 }
 
-/// Words in one of the two sectors.
 const SECTOR_WORDS: usize = 128 * 1024 / 4;
 /// The number of the first of them (RM0383, table 4).
 const FIRST_SECTOR: u8 = 6;
-/// RM0383, section 3.5.1.
 const KEYS: [u32; 2] = [0x4567_0123, 0xCDEF_89AB];
 /// Longer than any word and any sector takes (DS10314, flash memory programming).
 const PATIENCE_WORD_US: u32 = 1_000;

@@ -11,7 +11,7 @@ use cortex_m_rt::{ExceptionFrame, exception};
 use embassy_stm32::pac;
 use tenax_logic::restart::{self, Flags, Mark, Start};
 
-use crate::{black_box, bridge, vibrator};
+use crate::{black_box, board, bridge};
 
 /// Marks of the end of a run, as words in RAM; any other word is RAM after power-on.
 const MARKS: [(Mark, u32); 3] =
@@ -63,7 +63,7 @@ fn keep(place: usize, word: u32) {
 pub fn give_up(mark: Mark, why: &str) -> ! {
     cortex_m::interrupt::disable();
     bridge::off();
-    vibrator::off();
+    board::vibrator_off();
     if let Some((_, word)) = MARKS.iter().find(|(own, _)| *own == mark) {
         keep(MARK, *word);
     }

@@ -1,6 +1,6 @@
 //! The bounded boxes between control, which never waits, and the tasks of the serial line and of the store, which do.
 //!
-//! embassy's channels keep a `RefCell` inside, which is a way to panic; `tenax lint-image` sees to it that control has none.
+//! embassy's channels keep a `RefCell` inside, which is a way to panic.
 
 use core::cell::Cell;
 use core::future::poll_fn;
@@ -115,7 +115,6 @@ pub fn are_counters_due() -> bool {
 pub fn next_message(place: &mut MaybeUninit<Received<Up>>) -> impl Future<Output = Option<&Received<Up>>> {
     let mut place = Some(place);
     poll_fn(move |context| {
-        // Before it is asked: what comes in between wakes.
         UP_WAITING.register(context.waker());
         let Some(free) = place.take() else { return Poll::Ready(None) };
         if UP.take_to(free) {
@@ -127,13 +126,11 @@ pub fn next_message(place: &mut MaybeUninit<Received<Up>>) -> impl Future<Output
     })
 }
 
-/// Hands a command to control. Never waits: false if control has not taken the ones before, and no more than are earned
-/// at once fit anyway.
+/// Hands a command to control. Never waits: false if control has not taken the ones before.
 pub fn hand_over(command: Received<Down>) -> bool {
     DOWN.put(command)
 }
 
-/// The oldest command that control has not taken. Never waits.
 pub fn next_command() -> Option<Received<Down>> {
     DOWN.take()
 }
@@ -151,7 +148,6 @@ pub fn save(record: Record) {
 
 pub fn next_record() -> impl Future<Output = Record> {
     poll_fn(|context| {
-        // Before it is asked: what comes in between wakes.
         RECORD_WAITING.register(context.waker());
         let Some(record) = RECORD.lock(Cell::take) else { return Poll::Pending };
         RECORD_WAITS.store(false, Relaxed);
@@ -159,7 +155,6 @@ pub fn next_record() -> impl Future<Output = Record> {
     })
 }
 
-/// Says that a tick has ended, if the store waits for it.
 pub fn end_tick() {
     if TICK_WANTED.load(Relaxed) {
         TICK_WANTED.store(false, Relaxed);

@@ -9,7 +9,6 @@
 //! sequence numbers go on where time has got to.
 
 use embassy_stm32::Peri;
-use embassy_stm32::gpio::AnyPin;
 use embassy_stm32::pac::adc::regs::{Smpr1, Smpr2, Sqr1, Sqr2, Sqr3};
 use embassy_stm32::pac::adc::vals::{Dds, Exten, SampleTime};
 use embassy_stm32::pac::adccommon::vals::Adcpre;
@@ -64,7 +63,7 @@ impl Scan {
         stream: Peri<'static, DMA2_CH0>,
         ring: &'static mut [u32; RING_LEN],
         deadline: Deadline,
-        _pins: [Peri<'static, AnyPin>; SCAN_LEN],
+        _pins: impl Sized,
     ) -> Self {
         for (port, analog) in [pac::GPIOA, pac::GPIOB, pac::GPIOC].into_iter().zip(ANALOG) {
             port.moder().modify(|w| w.0 |= analog);

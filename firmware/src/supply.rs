@@ -22,7 +22,6 @@ const RISE_US: u32 = 1_000_000;
 const LINE: usize = 16;
 /// BOR_LEV: reset below 2.83 V.
 const BROWN_OUT_LEVEL_3: u8 = 0;
-/// RM0383, section 3.6.2.
 const OPTION_KEYS: [u32; 2] = [0x0819_2A3B, 0x4C5D_6E7F];
 /// Longer than the option bytes take (DS10314, flash memory programming).
 const PATIENCE_US: u32 = 4_000_000;
