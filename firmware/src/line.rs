@@ -116,9 +116,7 @@ impl Drop for Sending<'_> {
 }
 
 impl Up {
-    /// Sends it; over when DMA has handed on its last byte.
-    ///
-    /// Not an `async fn`: one that has an end can be asked again after it, which is a way to panic.
+    /// Sends it; over when DMA has handed on its last byte. Not an `async fn`, as [`Deadline::until`](crate::deadline::Deadline::until).
     pub fn send<'f>(&'f mut self, frame: &'f [u8]) -> impl Future<Output = ()> + 'f {
         let sending = Sending(PhantomData);
         SENT.store(false, Ordering::Relaxed);

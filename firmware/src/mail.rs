@@ -69,10 +69,8 @@ static TICK_WANTED: AtomicBool = AtomicBool::new(false);
 /// When it ended, us.
 static TICK_ENDED: Signal<CriticalSectionRawMutex, u32> = Signal::new();
 
-/// Hands a message to telemetry, numbered. Never waits: if the line is behind, the message is dropped and counted, and the
-/// other end sees the gap in the numbers.
-///
-/// For control only, which no other sender interrupts.
+/// Hands a message to telemetry, numbered. Never waits: if the line is behind, the message is dropped and counted. For control only,
+/// which no other sender interrupts.
 pub fn post(message: Up) {
     let sequence = NUMBER.fetch_add(1, Relaxed);
     if !UP.put(Received { sequence, message }) {
@@ -108,10 +106,8 @@ pub fn are_counters_due() -> bool {
     COUNTERS_DUE.swap(false, Relaxed)
 }
 
-/// Brings the oldest message posted to this place; waits for one. None: there is none and the counters are due, or the place was given
-/// away already.
-///
-/// Not an `async fn`: one that has an end can be asked again after it, which is a way to panic.
+/// Brings the oldest message posted to this place; waits for one. None: there is none and the counters are due. Not an `async fn`: one
+/// that has an end can be asked again after it, which is a way to panic.
 pub fn next_message(place: &mut MaybeUninit<Received<Up>>) -> impl Future<Output = Option<&Received<Up>>> {
     let mut place = Some(place);
     poll_fn(move |context| {

@@ -31,7 +31,6 @@ mod line;
 mod mail;
 mod scan;
 mod serial;
-mod stack;
 mod store;
 mod supply;
 
@@ -85,7 +84,7 @@ fn made(new: impl FnOnce() -> control::Control) -> &'static mut control::Control
 async fn main(spawner: Spawner) {
     // Before the clocks are waited for: until then the pins float.
     bridge::hold_low();
-    stack::guard();
+    last_words::guard_stack();
     let Start { after, cause, stay_off, .. } = last_words::start();
     let switched_on = cause == ResetCause::PowerOn;
     let browned_out = cause == ResetCause::Other && after.is_some();

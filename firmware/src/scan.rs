@@ -54,9 +54,7 @@ impl Due {
 }
 
 impl Scan {
-    /// Takes the hardware; nothing is converted before [`run`](Self::run).
-    ///
-    /// `pins` are proof that nobody else uses them.
+    /// Takes the hardware; nothing is converted before [`run`](Self::run). `pins` are proof that nobody else uses them.
     pub fn new(
         adc: Peri<'static, ADC1>,
         timer: Peri<'static, TIM3>,
