@@ -29,26 +29,24 @@ impl DetectorId {
         [Self::S1, Self::S2, Self::Hebbian, Self::Mlp, Self::Injected, Self::Photoelastic];
     pub const COUNT: usize = Self::ALL.len();
 
-    pub const fn name(self) -> &'static str {
+    /// Name and title.
+    const fn names(self) -> (&'static str, &'static str) {
         match self {
-            Self::S1 => "s1",
-            Self::S2 => "s2",
-            Self::Hebbian => "hebbian",
-            Self::Mlp => "mlp",
-            Self::Injected => "injected",
-            Self::Photoelastic => "photoelastic",
+            Self::S1 => ("s1", "S1 vibration"),
+            Self::S2 => ("s2", "S2 Ft/Fn"),
+            Self::Hebbian => ("hebbian", "Hebbian"),
+            Self::Mlp => ("mlp", "MLP"),
+            Self::Injected => ("injected", "injected"),
+            Self::Photoelastic => ("photoelastic", "photoelastic"),
         }
     }
 
+    pub const fn name(self) -> &'static str {
+        self.names().0
+    }
+
     pub const fn title(self) -> &'static str {
-        match self {
-            Self::S1 => "S1 vibration",
-            Self::S2 => "S2 Ft/Fn",
-            Self::Hebbian => "Hebbian",
-            Self::Mlp => "MLP",
-            Self::Injected => "injected",
-            Self::Photoelastic => "photoelastic",
-        }
+        self.names().1
     }
 }
 

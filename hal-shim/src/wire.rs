@@ -3,7 +3,7 @@
 //! A frame is `COBS(postcard(version, sequence, message) ++ CRC-32)` and a zero byte. The version and the sequence number
 //! come first, so that a receiver of another version can say so, and a receiver that missed frames can count them.
 //! Variants are only ever added at the end. The types are the one source: [`SCHEMA`], `python/tenax/wire.json` and Python's decoder
-//! follow from them, and a byte that changes asks for a new [`VERSION`] (`tests/golden.rs`).
+//! follow from them, and a byte that changes asks for a new [`VERSION`] (`tests/wire/golden.rs`).
 //!
 //! ```
 //! use tenax_hal_shim::wire::{Down, FRAME_MAX, Receiver, Setting, encode};

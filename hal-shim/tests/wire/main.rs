@@ -1,11 +1,15 @@
 //! The wire under garbage, loss and cuts. A failing case prints its seed and is kept by proptest.
 
+mod golden;
+mod schema;
+
 use std::fmt::Debug;
 
+use postcard_schema::Schema;
 use proptest::collection::vec;
 use proptest::option;
 use proptest::prelude::*;
-use proptest::sample::Index;
+use proptest::sample::{Index, select};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use tenax_hal_shim::behaviour::Behaviour;
@@ -20,26 +24,12 @@ use tenax_hal_shim::wire::{
 };
 use tenax_hal_shim::words::{Code, DriveSource, Fault, GripMode, Kept, Line, NoLesson};
 
-fn down() -> impl Strategy<Value = Down> {
-    prop_oneof![
-        Just(Down::Ping),
-        any::<u16>().prop_map(|age_ms| Down::Teach { codes: [Code::Minus, Code::Plus], age_ms }),
-        prop_oneof![Just(Behaviour::Stroke), Just(Behaviour::Hold)].prop_map(Down::Begin),
-        any::<(u8, i32)>().prop_map(|(id, value)| Down::Set(Setting { id, value })),
-        (0..=1_000u16, any::<u16>()).prop_map(|(duty, hold_ms)| Down::Drive {
-            drive: MotorDrive::Open(Duty::per_mille(duty)),
-            hold_ms
-        }),
-    ]
-}
+use self::schema::messages;
 
-fn up() -> impl Strategy<Value = Up> {
-    prop_oneof![
-        any::<u32>().prop_map(|frames| Up::Counters(Counters { frames, ..Counters::default() })),
-        any::<(u16, u32)>().prop_map(|(of, frame)| Up::Answer { of, frame, answer: Answer::Done }),
-        Just(Up::Raw(Raw::default())),
-        Just(Up::Senses(Senses { frame: 24, samples: [8_191; COUNT], films: [40; PVDF_COUNT] })),
-    ]
+/// Messages of each kind.
+fn any_message<T: Schema + DeserializeOwned + Clone + Debug + 'static>() -> impl Strategy<Value = T> {
+    let bytes = messages(T::SCHEMA).into_iter();
+    select(bytes.map(|(_, bytes)| postcard::from_bytes(&bytes).expect("a message")).collect::<Vec<T>>())
 }
 
 fn answer(answer: Answer) -> Up {
@@ -120,8 +110,8 @@ proptest! {
     // Shows L5.
     #[test]
     fn bad_bytes_are_no_message_and_every_whole_frame_arrives(
-        to_the_board in vec((down(), damage()), 1..40),
-        from_the_board in vec((up(), damage()), 1..40),
+        to_the_board in vec((any_message::<Down>(), damage()), 1..40),
+        from_the_board in vec((any_message::<Up>(), damage()), 1..40),
     ) {
         arrives(to_the_board)?;
         arrives(from_the_board)?;
@@ -129,7 +119,7 @@ proptest! {
 
     // Shows L5.
     #[test]
-    fn one_wrong_bit_is_never_another_command(message in down(), at in any::<Index>(), bit in 0..8u8) {
+    fn one_wrong_bit_is_never_another_command(message in any_message::<Down>(), at in any::<Index>(), bit in 0..8u8) {
         for received in receive::<Down>(&damaged(frame(1, &message), Damage::Flip(at, bit))).into_iter().flatten() {
             prop_assert_eq!(received, (1, message));
         }
