@@ -37,7 +37,6 @@ pub mod file;
 pub mod physics;
 pub mod picture;
 pub mod plant;
-mod pole;
 mod random;
 mod schedule;
 pub mod sensor;

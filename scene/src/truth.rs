@@ -49,7 +49,6 @@ pub struct Truth {
 pub struct Slip {
     pub micro_onset_s: f64,
     pub macro_onset_s: f64,
-    /// When it stuck again or was lost, s. None while it goes on.
     pub end_s: Option<f64>,
     pub distance_mm: f64,
     pub meant: bool,
@@ -64,10 +63,8 @@ pub struct MicroRun {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Phase {
-    /// None is rest.
     pub intent: Option<Intent>,
     pub begin_s: f64,
-    /// To, s. None while it goes on.
     pub end_s: Option<f64>,
 }
 

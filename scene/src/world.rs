@@ -218,7 +218,6 @@ impl World {
             }
             Task::Stroke(stroke) => {
                 self.touch = stroke.step(t_s);
-                // The surface lies still; the probe is the hand.
                 let probe_mm = stroke.probe_m * 1e3;
                 State { carried: true, position_mm: probe_mm, hand_mm: probe_mm, ..State::default() }
             }

@@ -14,7 +14,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use tenax_hal_shim::behaviour::Behaviour;
 use tenax_hal_shim::channel::{COUNT, PVDF_COUNT};
-use tenax_hal_shim::detector::{DetectorHealth, DetectorId, DetectorSet, Direction, Evidence};
+use tenax_hal_shim::detector::{DetectorId, DetectorSet, Evidence};
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::wire::{
@@ -157,14 +157,11 @@ fn the_longest_message_fits_a_frame() {
         drive: MotorDrive::Close(Duty::FULL),
         source: DriveSource::Reflex,
     };
-    let longest_evidence = Evidence {
-        slip: true,
-        incipient: true,
+    let evidence = Evidence {
         confidence_permille: u16::MAX,
-        direction: Direction::Up,
         decided_at: u32::MAX,
-        health: DetectorHealth::Blind,
         raw: i32::MIN,
+        ..Evidence::default()
     };
     let [fn_mn, load_mn, fx_mn, fy_mn, ft_mn] = [i32::MIN; 5];
     let forces = Forces { fn_mn, load_mn, fx_mn, fy_mn, ft_mn, ratio_permille: Some(u16::MAX) };
@@ -178,7 +175,7 @@ fn the_longest_message_fits_a_frame() {
         extensor_mv: Some(i16::MIN),
         wearer_active: true,
         lesson: Some([Code::Minus; 2]),
-        evidence: [(DetectorId::Injected, longest_evidence); DETECTORS_MAX].into_iter().collect(),
+        evidence: [(DetectorId::Injected, evidence); DETECTORS_MAX].into_iter().collect(),
         samples_sum: u32::MAX,
         line: Line::Armed { left_s: u8::MAX },
         behaviour: Some(Behaviour::Turn { by_ddeg: i16::MIN }),

@@ -9,7 +9,7 @@ use toml::Spanned;
 use toml::de::{DeTable, ValueDeserializer};
 
 use super::SceneFile;
-use super::quantity::{Instant, Mu};
+use super::quantity::Instant;
 use super::sections::{Command, CommandKind, FaultKind, SensorFault};
 use super::step::step;
 
@@ -32,12 +32,9 @@ pub(super) fn check(scene: &SceneFile, table: &DeTable<'_>) -> Checked {
     one_story(scene, &instants)?;
     step(scene)?;
     let opening = &scene.gripper.opening_mm;
-    demand(opening.get_ref().get() <= scene.gripper.range_mm.get(), opening.span(), || {
-        format!(
-            "opening_mm = {} is wider than range_mm = {}",
-            opening.get_ref().get(),
-            scene.gripper.range_mm.get()
-        )
+    let (opening_mm, range_mm) = (opening.get_ref().get(), scene.gripper.range_mm.get());
+    demand(opening_mm <= range_mm, opening.span(), || {
+        format!("opening_mm = {opening_mm} is wider than range_mm = {range_mm}")
     })?;
     for lift in &scene.electrode_lift {
         let channel = lift.channel.get_ref();
@@ -52,11 +49,10 @@ pub(super) fn check(scene: &SceneFile, table: &DeTable<'_>) -> Checked {
 fn friction(scene: &SceneFile) -> Checked {
     let pairs = scene.wet.iter().map(|wet| (wet.mu_s, &wet.mu_d));
     for (mu_s, mu_d) in pairs.chain([(scene.contact.mu_s, &scene.contact.mu_d)]) {
-        let mu_d_value = Mu::get(*mu_d.get_ref());
-        demand(mu_d_value <= mu_s.get(), mu_d.span(), || {
+        let (mu_s, span, mu_d) = (mu_s.get(), mu_d.span(), mu_d.get_ref().get());
+        demand(mu_d <= mu_s, span, || {
             format!(
-                "mu_d = {mu_d_value} is greater than mu_s = {}; a contact cannot slide harder than it sticks",
-                mu_s.get()
+                "mu_d = {mu_d} is greater than mu_s = {mu_s}; a contact cannot slide harder than it sticks"
             )
         })?;
     }
@@ -135,67 +131,44 @@ fn fault(fault: &SensorFault) -> Checked {
     demand(kind != FaultKind::Open || is_switched, fault.channel.span(), || {
         format!("channel = \"{}\" is behind no switch", channel.name())
     })?;
-    let press = fault.press_n.as_ref().map(Spanned::span);
-    only(kind == FaultKind::Pressed, press, fault, "pressed", "press_n")?;
-    let drift = fault.drift_per_s.as_ref().map(Spanned::span);
-    only(kind == FaultKind::Drift, drift, fault, "drift", "drift_per_s")?;
-    let with = fault.with.as_ref().map(Spanned::span);
-    only(
-        [FaultKind::Swapped, FaultKind::Bridged].contains(&kind),
-        with,
-        fault,
-        "swapped\" or \"bridged",
-        "with",
-    )
-}
-
-fn only(is_it: bool, key: Option<Range<usize>>, fault: &SensorFault, kind: &str, name: &str) -> Checked {
-    match key {
+    let exchanges = [FaultKind::Swapped, FaultKind::Bridged].contains(&kind);
+    let own = [
+        (kind == FaultKind::Pressed, fault.press_n.as_ref().map(Spanned::span), "pressed", "press_n"),
+        (kind == FaultKind::Drift, fault.drift_per_s.as_ref().map(Spanned::span), "drift", "drift_per_s"),
+        (exchanges, fault.with.as_ref().map(Spanned::span), "swapped\" or \"bridged", "with"),
+    ];
+    own.into_iter().try_for_each(|(is_it, key, kind, name)| match key {
         None => demand(!is_it, fault.channel.span(), || format!("kind = \"{kind}\" needs {name}")),
-        Some(span) if !is_it => {
-            Err(Wrong { span, what: format!("{name} belongs to kind = \"{kind}\" only") })
-        }
-        Some(_) => Ok(()),
-    }
+        Some(span) => demand(is_it, span, || format!("{name} belongs to kind = \"{kind}\" only")),
+    })
 }
 
 fn command(command: &Command) -> Checked {
-    let kind = *command.kind.get_ref();
-    let wrong = |span, what: String| Err(Wrong { span, what });
-    match kind {
+    let needs = |what: &str| Wrong { span: command.kind.span(), what: what.to_owned() };
+    match *command.kind.get_ref() {
         CommandKind::Close | CommandKind::Open => {
-            let Some(duty) = &command.duty_permille else {
-                return wrong(command.kind.span(), "a drive needs duty_permille and for_s".to_owned());
-            };
+            let duty = command
+                .duty_permille
+                .as_ref()
+                .ok_or_else(|| needs("a drive needs duty_permille and for_s"))?;
             demand(*duty.get_ref() <= 1_000, duty.span(), || {
                 format!("duty_permille = {} is outside 0..=1000", duty.get_ref())
             })?;
-            demand(command.for_s.is_some(), command.kind.span(), || "a drive needs for_s".to_owned())
+            command.for_s.map(|_| ()).ok_or_else(|| needs("a drive needs for_s"))
         }
         CommandKind::Begin(Behaviour::Turn { .. }) => {
-            let Some(value) = &command.value else {
-                return wrong(command.kind.span(), "a turn needs value, in degrees".to_owned());
-            };
+            let value = command.value.as_ref().ok_or_else(|| needs("a turn needs value, in degrees"))?;
             demand((-180..=180).contains(value.get_ref()), value.span(), || {
                 format!("value = {} degrees is outside -180..=180", value.get_ref())
             })
         }
         CommandKind::Begin(_) | CommandKind::End | CommandKind::Zero | CommandKind::Consent => Ok(()),
         CommandKind::Set(id) => {
-            let Some(value) = &command.value else {
-                return wrong(command.kind.span(), "a setting needs value".to_owned());
-            };
-            let row = id.row();
-            let range = row.range();
+            let value = command.value.as_ref().ok_or_else(|| needs("a setting needs value"))?;
+            let (row, range) = (id.row(), id.row().range());
             demand(range.contains(value.get_ref()), value.span(), || {
-                format!(
-                    "value = {} {} is outside {}..={} of {}",
-                    value.get_ref(),
-                    row.unit,
-                    range.start(),
-                    range.end(),
-                    row.name
-                )
+                let (value, low, high) = (value.get_ref(), range.start(), range.end());
+                format!("value = {value} {} is outside {low}..={high} of {}", row.unit, row.name)
             })
         }
     }

@@ -87,7 +87,6 @@ pub struct SceneFile {
 
 impl SceneFile {
     /// Reads a scene, whose base is one of the program's. `file_name` is what errors call it.
-    /// An error says the file, the line, the key, and what is allowed there.
     pub fn parse(text: &str, file_name: &str) -> Result<Self, SceneError> {
         Self::parse_upon(text, file_name, &find)
     }
@@ -104,7 +103,6 @@ impl SceneFile {
     }
 
     /// A scene and what it stands on as one table, unchecked: for whoever draws its numbers anew.
-    /// Fails if it is no TOML, or its base is not there.
     pub fn table(text: &str, file_name: &str) -> Result<toml::Table, SceneError> {
         let sources = Sources::read(text, file_name, &find)?;
         toml::Table::deserialize(toml::Deserializer::from(sources.merged()?))

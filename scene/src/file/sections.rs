@@ -18,9 +18,7 @@ use super::quantity::{
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Level {
-    /// Rigid Coulomb friction.
     L0,
-    /// A patch of bristles.
     L1,
 }
 
@@ -47,7 +45,6 @@ pub struct Wet {
     pub until_s: Option<Instant>,
     pub ramp_ms: Milliseconds,
     pub mu_s: Mu,
-    /// Dynamic friction while it lasts, at most `mu_s`.
     pub mu_d: Spanned<Mu>,
 }
 
@@ -205,7 +202,6 @@ pub struct Myo {
     /// Rise of the envelope from 10 to 90 %.
     pub rise_ms: Milliseconds,
     pub tone_mv: Millivolts,
-    /// Wandering of a relaxed envelope, rms.
     pub noise_mv: Millivolts,
     /// Wandering of a contraction, rms, as a part of it.
     pub ripple: Part,
@@ -223,7 +219,6 @@ pub struct Strain {
     pub drift_mv_per_min: Millivolts,
     pub creep: Part,
     pub creep_s: Duration,
-    /// Noise of a reading, rms.
     pub noise_mv: Millivolts,
 }
 
@@ -243,7 +238,6 @@ pub struct Array {
     pub place_mm: Lever,
     /// Which array it is: its gains and offsets. The scene's seed decides if it is not said.
     pub specimen: Option<u32>,
-    /// Noise of a reading, rms.
     pub noise_mv: Millivolts,
 }
 
@@ -253,9 +247,7 @@ pub struct Array {
 pub struct Skin {
     pub rate_hz: Hertz,
     pub delay_ms: DeadTime,
-    /// Noise of a marker's force, rms.
     pub force_noise_mn: Millinewtons,
-    /// Noise of the object's angle, rms.
     pub angle_noise_deg: Degrees,
     /// Points that move though nothing does, rms, in 1/10,000 of the picture.
     pub speckle_e4: Gain,
@@ -269,7 +261,6 @@ pub struct Skin {
 pub struct Camera {
     pub pixel_mm: Millimetres,
     pub rate_hz: Hertz,
-    /// Jitter of a mark's place, rms, pixels.
     pub jitter_px: Part,
     pub delay_ms: DeadTime,
     pub teaches: bool,
@@ -289,10 +280,8 @@ pub struct Photoelastic {
     pub span_mv: Millivolts,
     pub spread: Part,
     pub drift: Part,
-    /// Ambient light at most.
     pub ambient_mv: Millivolts,
     pub knock_mn_per_mv: Gain,
-    /// Noise of a frame's sample, rms.
     pub noise_mv: Millivolts,
 }
 
@@ -366,7 +355,6 @@ pub struct Command {
     pub for_s: Option<Duration>,
 }
 
-/// Something hits the hand or the table: a short ring in every film.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Knock {
@@ -384,7 +372,6 @@ impl Knock {
     }
 }
 
-/// Mains near by, in every film from an instant on, beside `[pvdf]`'s own.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Hum {

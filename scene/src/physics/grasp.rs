@@ -11,7 +11,6 @@ use crate::file::SceneFile;
 use crate::file::sections::Object;
 use crate::schedule::{STEP_S, Span};
 
-/// Two fingers.
 const PADS: f64 = 2.0;
 
 /// The object, what is poured into it, the table under it, and the two pads at its sides.
@@ -58,7 +57,6 @@ impl Grasp {
     pub(crate) fn new(scene: &SceneFile, object: &Object) -> Self {
         let empty_kg = object.mass_kg.get();
         let mat_n_per_m = scene.table.mat_n_per_mm.get() * 1e3;
-        // Damping of the mat with the empty object on it, as a part of critical.
         let mat_ns_per_m = 2.0 * scene.table.damping.get() * (mat_n_per_m * empty_kg).sqrt();
         let fills = scene
             .fill
@@ -141,7 +139,6 @@ impl Grasp {
         let shear_n = (outcome.force_n - drag_ns_per_m * free_m_s) / PADS;
         self.shear_part = if grip_n > 0.0 { (shear_n.abs() / (holds * grip_n)).min(1.0) } else { 0.0 };
 
-        // Both at once, by the ellipsoid.
         let along_n = free_n.abs() / PADS / holds;
         self.needed_n = along_n.hypot(turn.needed_n);
         self.needs_n = [along_n, turn.needed_n];

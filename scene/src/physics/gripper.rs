@@ -8,7 +8,6 @@ use tenax_hal_shim::motor::{Duty, MotorDrive};
 use crate::file::sections;
 use crate::schedule::STEP_S;
 
-/// Fingers, motor and gear.
 ///
 /// The duty sets the finger speed, less what the load takes: `v = v_max (duty - F / F_max)`, so the fingers stall at `duty F_max`. A
 /// load never opens the hand. A drive reaches the fingers one dead time later. A position-controlled gripper moves by whole steps,
@@ -116,12 +115,10 @@ impl Gripper {
             .clamp(self.opening_mm - closing_mm, self.opening_mm + self.parameters.speed_mm_s.get() * STEP_S)
     }
 
-    /// The opening as a part of the whole range.
     pub fn opening_part(&self) -> f64 {
         self.opening_mm / self.parameters.range_mm.get()
     }
 
-    /// The speed as a part of the fastest, 0 to 1.
     pub fn speed_part(&self) -> f64 {
         (self.speed_mm_s / self.parameters.speed_mm_s.get()).abs()
     }

@@ -1,7 +1,7 @@
 //! The wearer's arm, which carries the hand up, down, and swinging.
 
 use crate::file::sections::{Move, Swing};
-use crate::pole::LowPass;
+use crate::schedule::LowPass;
 use crate::schedule::{STEP_S, Span};
 
 /// Time constant with which a person notices that the table carries, s (assumed).

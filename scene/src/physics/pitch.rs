@@ -166,14 +166,6 @@ mod tests {
         assert!(!turns(critical_n * 1.001) && turns(critical_n * 0.999));
     }
 
-    #[test]
-    fn shear_leaves_less_for_torsion() {
-        let (mut alone, mut shared) = (pitch(2.0, 0.0), pitch(2.0, 0.0));
-        alone.step(under(2.0), FRICTION);
-        shared.step(Load { shear_part: 0.9, ..under(2.0) }, FRICTION);
-        assert!(!alone.turns() && shared.turns());
-    }
-
     proptest! {
         #[test]
         fn torsional_friction_never_adds_energy(

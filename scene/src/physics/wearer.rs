@@ -26,7 +26,6 @@ struct Contraction {
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Effort {
-    /// None is rest.
     pub intent: Option<Intent>,
     pub flexor_mv: f64,
     pub extensor_mv: f64,

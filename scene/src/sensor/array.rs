@@ -12,9 +12,7 @@ use crate::physics::{TOUCH_N, Touch};
 use crate::random::{Noise, Source};
 use crate::schedule::FRAME_S;
 
-/// Elements side by side.
 const ROWS: usize = 2;
-/// Elements along the pad.
 const LONG: usize = ARRAY_COUNT / ROWS;
 /// Time in which the cover forgets that an element slipped, s (assumed).
 const FORGETS_S: f64 = 0.030;

@@ -6,7 +6,7 @@ use tenax_hal_shim::front_end::{fsr_mv, fsr_quadrants_n};
 use super::front_end_v;
 use crate::file::sections::Fsr;
 use crate::physics::Touch;
-use crate::pole::LowPass;
+use crate::schedule::LowPass;
 
 /// Four quadrants: tilt, hysteresis, creep, and the power law between force and conductance.
 #[derive(Clone, Debug)]

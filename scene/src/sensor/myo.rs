@@ -8,8 +8,8 @@ use tenax_hal_shim::front_end::MYO_REST_MV;
 use super::front_end_v;
 use crate::file::sections::{ElectrodeLift, Myo};
 use crate::physics::wearer::Effort;
-use crate::pole::LowPass;
 use crate::random::{Noise, Source};
+use crate::schedule::LowPass;
 use crate::schedule::Span;
 
 pub(crate) const SIDES: usize = 2;

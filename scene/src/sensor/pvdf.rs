@@ -9,8 +9,8 @@ use super::front_end_v;
 use super::place::Place;
 use crate::file::sections::{Hum, Knock, Pvdf};
 use crate::physics::{TOUCH_N, Touch};
-use crate::pole::LowPass;
 use crate::random::{Noise, Seeds, Source};
+use crate::schedule::LowPass;
 use crate::schedule::{STEP_S, Span};
 
 /// A knock is forgotten after this many times its decay: e^-12 of millivolts is below any code.
