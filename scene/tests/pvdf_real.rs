@@ -100,9 +100,9 @@ fn near(value: f64, figures: Range<f64>) -> bool {
 fn slip_onset_is_a_bump_and_not_a_burst_with_and_without_a_patch() {
     // The onset is at 42.013 s; a cut of 100 ms like the recording's, before the glass has fallen out of the hand.
     let rigid = recording(&scene("glass"), 41.99..42.09);
-    let long: [(Films, fn(&[f64]) -> f64, _); 2] =
-        [(rigid, bump_ms, 25.0..26.0), (patch_onset(), half_height_ms, 10.0..20.0)];
-    for (onset, length_ms, recorded_ms) in long {
+    let lengths: [fn(&[f64]) -> f64; 2] = [bump_ms, half_height_ms];
+    let onsets = [(rigid, 25.0..26.0), (patch_onset(), 10.0..20.0)];
+    for ((onset, recorded_ms), length_ms) in onsets.into_iter().zip(lengths) {
         let swing_mv = median(&onset, peak_to_peak);
         assert!(near(swing_mv, 37.0..61.0), "{swing_mv} mV peak to peak");
         let low = median(&onset, |film| energy_part(film, 0.0..100.0));
