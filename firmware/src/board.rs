@@ -54,7 +54,6 @@ pub struct Switches {
 }
 
 impl Switches {
-    /// Takes the pins of S0 to S3; the lines show 0.
     pub fn new(lines: [Peri<'static, AnyPin>; 4]) -> Self {
         // Slow edges: they must not be heard on the films, and the switches have most of 87 us to settle.
         Self { _lines: lines.map(|line| Output::new(line, Level::Low, Speed::Low)) }

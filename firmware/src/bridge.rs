@@ -24,7 +24,6 @@ const OPEN: usize = 1;
 const PINS: [usize; 2] = [8, 9];
 const TIM1_PINS: u8 = 1;
 
-/// Both sides of the bridge. A side that is not driven is low.
 pub struct Bridge {
     /// The duty for which its edges have their place.
     placed: Duty,

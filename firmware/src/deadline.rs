@@ -20,7 +20,6 @@ pub fn clock_us() -> u32 {
     pac::TIM2.cnt().read()
 }
 
-/// Waker of control, which waits for one thing at a time.
 pub static WAITING: AtomicWaker = AtomicWaker::new();
 
 /// An instant, us; they wrap after 71 minutes, so two of them are compared only if they are less than half of that apart.

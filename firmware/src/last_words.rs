@@ -19,9 +19,7 @@ const MARKS: [(Mark, u32); 3] =
 /// Not initialised by the runtime: a reset leaves it as it is.
 #[unsafe(link_section = ".uninit.mark")]
 static mut KEPT: MaybeUninit<[u32; 2]> = MaybeUninit::uninit();
-/// Index of the mark.
 const MARK: usize = 0;
-/// Index of the number of restarts in a row.
 const RESTARTS: usize = 1;
 
 /// The cause of this start. Called once, first: it clears flags and mark.
@@ -43,7 +41,6 @@ pub fn start() -> Start {
     start
 }
 
-/// Ends the row of restarts.
 pub fn lived_well() {
     keep(RESTARTS, 0);
 }

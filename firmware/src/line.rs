@@ -105,7 +105,6 @@ pub fn open(
     (Up { _taken: () }, Down { read: 0 })
 }
 
-/// Stops the stream before what it reads is gone.
 struct Sending<'f>(PhantomData<&'f [u8]>);
 
 impl Drop for Sending<'_> {
@@ -143,7 +142,6 @@ impl Up {
 }
 
 impl Down {
-    /// Waits for bytes and takes as many as there are and fit.
     pub fn read<'b>(&'b mut self, bytes: &'b mut [u8]) -> impl Future<Output = Result<usize, Overrun>> + 'b {
         poll_fn(move |context| {
             // Before it is asked: what comes in between wakes.

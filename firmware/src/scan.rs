@@ -147,7 +147,6 @@ fn reset() {
     pac::ADC1.cr2().modify(|w| w.set_adon(true));
 }
 
-/// Lets TIM3 trigger scans of all ranks.
 fn listen(converter: pac::adc::Adc) {
     converter.sqr3().write_value(Sqr3(SEQUENCE[0]));
     converter.sqr2().write_value(Sqr2(SEQUENCE[1]));

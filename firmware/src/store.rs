@@ -31,7 +31,6 @@ pub fn restore(device: &mut Device, flash: &Flash, found: &Found) {
     }
 }
 
-/// Sends the restored records up, for a replay of this run.
 #[inline(never)]
 pub fn restored(flash: &Flash, found: &Found, tell: impl Fn(Up)) {
     let mut buffer = [0; PAYLOAD_BYTES];

@@ -21,7 +21,6 @@ pub enum Act {
     Touch(usize),
 }
 
-/// Letters and what they do, for a person at the bench.
 pub const KEYS: [(&str, &str, Act); 6] = [
     ("g", "grip and lift", Act::Grip),
     ("d", "put down", Act::PutDown),

@@ -11,7 +11,6 @@ use crate::random::{Noise, Source};
 pub const WIDTH: usize = 320;
 pub const HEIGHT: usize = 240;
 pub const PIXELS: usize = WIDTH * HEIGHT;
-/// Samples of noise that pictures take theirs from.
 const NOISE: usize = 1 << 18;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,7 +20,6 @@ pub struct Options {
     pub fisheye: bool,
 }
 
-/// Difficulties of a session.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stress {
     /// Brightness of the object over that of the wall, levels; darker where there is no room.

@@ -37,7 +37,6 @@ macro_rules! quantities {
     )*};
 }
 
-// Each kind, its range and its unit.
 quantities! {
     Instant: 0.0 to 3600.0; // s
     Duration: 0.000125 to 3600.0; // s, at least one scan

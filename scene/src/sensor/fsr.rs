@@ -8,7 +8,6 @@ use crate::file::sections::Fsr;
 use crate::physics::Touch;
 use crate::schedule::LowPass;
 
-/// Four quadrants: tilt, hysteresis, creep, and the power law between force and conductance.
 #[derive(Clone, Debug)]
 pub(crate) struct Quadrants {
     hysteresis: f64,
