@@ -6,9 +6,9 @@ use proptest::prelude::*;
 use tenax_scene::physics::brush::{BrushPatch, ELEMENTS, Pad, closed_form};
 use tenax_scene::physics::contact::RigidCoulomb;
 use tenax_scene::physics::friction::Friction;
-use tenax_scene::physics::stribeck::{BLOCK_N, Slider, Stribeck, StribeckSlider};
+use tenax_scene::physics::stribeck::{BLOCK_N, METAL, Slider, Stribeck, StribeckSlider};
 use tenax_scene::sensor::photoelastic::HEAD_STRIP;
-use tenax_scene::stepping::SHIPPED_S;
+use tenax_scene::stepping::{SHIPPED_S, growth_per_s};
 
 const PAD: Pad = Pad { radius_m: 0.005, stiffness_n_per_m3: 2.55e7 };
 const NORMAL_N: f64 = 2.0;
@@ -82,6 +82,18 @@ fn rigid_coulomb_holds_what_a_patch_loses() {
     assert_eq!(hold(0.98 * peak), (true, true));
     assert_eq!(hold(0.5 * (peak + DROPS.mu_s)), (true, false));
     assert_eq!(hold(1.02 * DROPS.mu_s), (false, false));
+}
+
+#[test]
+fn the_slider_vibrates_by_itself_where_its_damping_is_less_than_friction_falls() {
+    // The sliding speed at which `c + P dmu/dv = 0`, m/s, under a friction that falls by 0.1.
+    let slider = Slider { friction: Stribeck { mu_s: METAL.mu_d + 0.1, ..METAL }, ..HEAD_STRIP };
+    let steepest = -BLOCK_N * slider.friction.slope_s_m(0.0);
+    let critical_m_s = METAL.speed_m_s * (steepest / slider.damping_ns_per_m).ln();
+    for part in [0.8, 0.95, 1.05, 1.3] {
+        let growth_per_s = growth_per_s(slider, BLOCK_N, part * critical_m_s).expect("it swings");
+        assert_eq!(growth_per_s > 0.0, part < 1.0, "{part}: {growth_per_s}");
+    }
 }
 
 #[test]
