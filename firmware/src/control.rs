@@ -10,24 +10,20 @@ use tenax_logic::fingertip::Fingertip;
 use tenax_logic::stream::SENSES_SLOT;
 
 use crate::black_box;
+use crate::board::{Button, Switches, Vibrator, Watchdog};
 use crate::bridge::Bridge;
-use crate::button::Button;
 use crate::counts;
 use crate::last_words;
 use crate::mail;
 use crate::scan::Scan;
-use crate::switches::Switches;
-use crate::vibrator::Vibrator;
-use crate::watchdog::Watchdog;
 
 pub struct Control {
-    device: Device,
+    pub device: Device,
     bridge: Bridge,
     vibrator: Vibrator,
     switches: Switches,
     button: Button,
     watchdog: Watchdog,
-    /// Slow frames so far, as far as they count.
     slow_frames: u16,
 }
 
@@ -42,10 +38,6 @@ impl Control {
         watchdog: Watchdog,
     ) -> Self {
         Self { device: Device::default(), bridge, vibrator, switches, button, watchdog, slow_frames: 0 }
-    }
-
-    pub fn restore(&mut self, restore: impl FnOnce(&mut Device)) {
-        restore(&mut self.device);
     }
 
     /// Everything that a frame causes, the most urgent first.
@@ -143,8 +135,7 @@ fn tenax_control_tick(fingertip: &mut Fingertip, frame: &Frame) -> MotorDrive {
     fingertip.tick(frame)
 }
 
-/// A command taken, before the tick of the frame that came last. Not inlined, so that the emulated board can tell by this
-/// name before which tick that was: a replay gives it to the host's logic there.
+/// A command taken. Not inlined, so that the emulated board can tell by this name before which tick that was.
 #[inline(never)]
 #[unsafe(no_mangle)]
 fn tenax_control_command(device: &mut Device, command: &Received<Down>) -> Result<(), Refusal> {

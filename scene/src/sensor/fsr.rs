@@ -6,9 +6,8 @@ use tenax_hal_shim::front_end::{fsr_mv, fsr_quadrants_n};
 use super::front_end_v;
 use crate::file::sections::Fsr;
 use crate::physics::Touch;
-use crate::pole::LowPass;
+use crate::schedule::LowPass;
 
-/// Four quadrants: tilt, hysteresis, creep, and the power law between force and conductance.
 #[derive(Clone, Debug)]
 pub(crate) struct Quadrants {
     hysteresis: f64,
@@ -56,7 +55,7 @@ mod tests {
 
     #[test]
     fn unloading_reads_more_than_loading_at_the_same_force() {
-        let mut quadrants = Quadrants::new(&Fsr::default());
+        let mut quadrants = Quadrants::new(&crate::file::plain("", "").fsr);
         let loading = settled(&mut quadrants, 5.0);
         settled(&mut quadrants, 20.0);
         let unloading = settled(&mut quadrants, 5.0);
@@ -65,7 +64,7 @@ mod tests {
 
     #[test]
     fn a_lasting_load_creeps_up_and_the_unloaded_sensor_comes_back() {
-        let mut quadrants = Quadrants::new(&Fsr::default());
+        let mut quadrants = Quadrants::new(&crate::file::plain("", "").fsr);
         let first = settled(&mut quadrants, 5.0);
         (0..2_000 * 20).for_each(|_| _ = settled(&mut quadrants, 5.0));
         let later = settled(&mut quadrants, 5.0);
