@@ -1,22 +1,19 @@
 //! The emulated board: the real image, instruction by instruction, with a plant at its pins.
 
-mod commands;
 pub(crate) mod cost;
 pub mod coupling;
+mod flash;
+mod line;
 mod mishaps;
+mod nucleo;
 pub(crate) mod wires;
 mod world;
-
-pub use crate::board_model::Models;
 
 use std::num::NonZeroU64;
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError, mpsc};
 use std::time::Instant;
 
-use crate::board_model::flash::FlashArray;
-use crate::board_model::line::Line;
-use crate::board_model::nucleo::Nucleo;
 use anyhow::{Context, Result, anyhow};
 use rigless::emulator::{self, Finished, Start, Watch};
 use rigless::image::Image;
@@ -27,7 +24,9 @@ use tenax_scene::plant::Plant;
 
 use self::cost::CostMeter;
 use self::coupling::Coupling;
+use self::flash::FlashArray;
 use self::mishaps::Mishaps;
+use self::nucleo::Nucleo;
 use self::world::{Stretch, World};
 use super::kept::{Provision, Sectors};
 use super::line_log::LineLog;
@@ -50,8 +49,6 @@ pub struct Options {
     pub word_us: u64,
     /// What the bridge's edges leave in the films' codes. None: nothing.
     pub coupling: Option<Coupling>,
-    pub models: Models,
-    pub ticks: Option<mpsc::Sender<Tick>>,
 }
 
 impl Default for Options {
@@ -62,16 +59,8 @@ impl Default for Options {
             flash: None,
             word_us: 16,
             coupling: None,
-            models: Models::Quick,
-            ticks: None,
         }
     }
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Tick {
-    pub at_ns: u64,
-    pub instruction_count: u64,
 }
 
 /// Something that a board must survive.
@@ -154,7 +143,7 @@ fn closed_loop(
         provision.calibrated = None;
     }
     let (sender, reports) = mpsc::channel();
-    let cost = CostMeter::new(&symbols, options.ticks.clone());
+    let cost = CostMeter::new(&symbols);
     let [tick, after_tick] = cost.watched();
     let mishaps = Mishaps::new(&options.mishaps);
     let flash = FlashArray::new(1_000 * options.word_us);
@@ -167,12 +156,12 @@ fn closed_loop(
     if let Some((address, bytes)) = options.flash.clone().or(Some(kept)) {
         images.push(Image::new(Path::new("flash"), bytes, Some(address))?);
     }
-    let (models, rate) = (options.models, options.instructions_per_second);
+    let rate = options.instructions_per_second;
 
     // The emulator keeps its driver for itself, so it runs on a thread of its own and reports to this one.
     let (mut heard, mut log, mut scanned) = (Summary::default(), LineLog::new(frames), 0);
     let finished = std::thread::scope(|scope| {
-        let emulator = scope.spawn(move || execute(&images, models, rate, watched, world));
+        let emulator = scope.spawn(move || execute(&images, rate, watched, world));
         for Stretch { scans, line } in reports {
             scanned += scans.len();
             for (codes, drive, slipping) in scans {
@@ -184,12 +173,12 @@ fn closed_loop(
         emulator.join().map_err(|_| anyhow!("the emulator panicked; its message is above"))?
     })?;
 
-    let world = finished.driver;
+    let mut world = finished.driver;
     if let Some(broken) = world.broken {
         return Err(broken.into());
     }
     // What the last scans led to had time to come up the line; what came after them was no part of the run.
-    let mut taken = world.commands.taken(&heard.answers);
+    let mut taken = world.taken(&heard.answers);
     taken.retain(|(before, _)| *before < frames);
     // What a frame decides is on the pin in the scans of the next.
     let frame_of = |scan: usize| (scan / SCANS_PER_FRAME).saturating_sub(1) as u32;
@@ -210,12 +199,11 @@ fn closed_loop(
 
 fn execute(
     images: &[Image],
-    models: Models,
     rate: NonZeroU64,
     watched: [u64; 3],
     world: World,
 ) -> Result<Finished<Nucleo, World>> {
-    let board = Nucleo::new(models, rate, Line::default())?;
+    let board = Nucleo::new(rate)?;
     let mut session = Session::new(Box::new(board), 0, VirtualNanos(1))?;
     for address in watched {
         session.watch(Watch::Instruction(address));

@@ -2,7 +2,6 @@
 #![cfg(feature = "emulator")]
 
 mod agreement;
-mod converter;
 mod coupling;
 mod faults;
 #[path = "../common/hash.rs"]
