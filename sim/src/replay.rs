@@ -3,7 +3,6 @@
 //! The recording is what somebody's sensors gave; the recipe is the analogue front end that would have stood between
 //! those sensors and this board's pins. Nothing here knows what a detector is.
 
-pub mod calibrate;
 pub mod facts;
 pub mod filter;
 pub mod library;

@@ -21,7 +21,6 @@ use std::path::Path;
 use std::path::PathBuf;
 
 use anyhow::{Context, bail};
-use tenax_logic::emg::model::EmgModel;
 use tenax_scene::plant::Plant;
 use tenax_scene::{SceneFile, World, builtin};
 
@@ -40,7 +39,7 @@ use crate::figure::panels;
 use crate::live::{Served, Use};
 use crate::replay::{ReplayPlant, library};
 use crate::report::fate::Fate;
-use crate::report::replay::{ActivePart, Replay};
+use crate::report::replay::Replay;
 use crate::report::{Report, Subject};
 use crate::timeline::Timeline;
 
@@ -203,50 +202,37 @@ pub fn replay(
     board: &Board,
     progress: &mut dyn FnMut(f64),
 ) -> anyhow::Result<Outcome> {
-    let options = ReplayOptions { recipe, ..ReplayOptions::default() };
-    replay_served(path, options, seed, board, &mut (), progress)
+    replay_served(path, recipe, Use::default(), seed, board, &mut (), progress)
 }
 
-#[derive(Default)]
-pub struct ReplayOptions<'a> {
-    /// The recipe's name or file. None: the one that the recording's name calls for.
-    pub recipe: Option<&'a str>,
-    pub calibrated: Option<EmgModel>,
-    pub line: Use,
-}
-
-/// Plays a recording; `recorder` is told of the run as it goes.
+/// Plays a recording by a recipe, its name or file, or by the one that the recording's name calls for; `recorder` is told of the
+/// run as it goes.
 pub fn replay_served(
     path: &Path,
-    options: ReplayOptions<'_>,
+    recipe: Option<&str>,
+    line: Use,
     seed: u64,
     board: &Board,
     recorder: &mut dyn Recorder,
     progress: &mut dyn FnMut(f64),
 ) -> anyhow::Result<Outcome> {
-    let ReplayOptions { recipe, calibrated, line } = options;
     let (recording, named) = library::read(path, recipe)?;
-    let mut plant = match &named {
+    let plant = match &named {
         Some(named) => ReplayPlant::new(&recording, &named.recipe, seed)
             .with_context(|| format!("recipe {}", named.name))?,
         None => ReplayPlant::plain(&recording, seed)?,
     };
-    plant.calibrated = calibrated;
     let (zero_s, end_s) = (plant.time_zero_s(), plant.time_zero_s() + plant.duration_s());
     // Of the rows held before and after, as much as shows where the recording begins and ends.
     let margin_s = (0.05 * recording.duration_s()).max(0.02);
     let last_s = recording.first_s() + recording.duration_s();
     let span_s = (zero_s.max(recording.first_s() - margin_s), end_s.min(last_s + margin_s));
-    let calibrated = plant.calibrated().as_ref().map(model_of).transpose()?;
-    let mut witness = Witness::new(zero_s, span_s, calibrated.as_ref());
-    let mut active = ActivePart::new(&recording, zero_s);
-    let plant = line.of(plant);
-    let (run, _) = board.record(plant, &mut (&mut (&mut witness, &mut active), recorder), progress)?;
+    let mut witness = Witness::new(zero_s, span_s, None);
+    let (run, _) = board.record(line.of(plant), &mut (&mut witness, recorder), progress)?;
     let scene = name_of(path);
     let (mut report, mut figure, timeline) = told(&scene, board.name(), seed, &run, witness, [None; 2]);
     let lead_in_s = recording.first_s() - zero_s;
-    report.replay =
-        Some(Replay::new(&recording, named.as_ref(), lead_in_s, &timeline, &active, &report.wearer)?);
+    report.replay = Some(Replay::new(&recording, named.as_ref(), lead_in_s, &timeline, &report.wearer)?);
     if let Some(named) = &named {
         figure.subtitle = format!("{} ({}), {}", named.recipe.title, named.name, figure.subtitle);
     }

@@ -1,5 +1,7 @@
 //! When things happened in a run, in seconds.
 
+use std::ops::RangeInclusive;
+
 use tenax_hal_shim::channel::{FRAME_HZ, FRAMES_PER_SLOW_FRAME};
 use tenax_hal_shim::detector::{DetectorId, DetectorSet};
 use tenax_hal_shim::wire::{Event, EventKind, Slow, TickRecord};
@@ -14,7 +16,8 @@ pub struct Timeline {
     said: [Edges; DetectorId::COUNT],
     believed: [Edges; DetectorId::COUNT],
     acted: [Edges; DetectorId::COUNT],
-    wearer: Edges,
+    /// The last frame of each slow frame, and whether a muscle was active in it.
+    active: Vec<(u32, bool)>,
 }
 
 impl Recorder for Timeline {
@@ -25,7 +28,7 @@ impl Recorder for Timeline {
                 push(edges, set, frame, slow.wearer_active);
             }
         }
-        self.wearer.push(slow.frame, slow.wearer_active, true);
+        self.active.push((slow.frame, slow.wearer_active));
     }
 }
 
@@ -83,7 +86,17 @@ impl Timeline {
         });
         let taken_over: Vec<f64> = taken_over.collect();
         let exact = |end: f64| taken_over.iter().copied().find(|&t| t > end - slow_frame_s && t <= end);
-        self.times_s(&self.wearer).into_iter().map(|end| exact(end).unwrap_or(end)).collect()
+        let mut before = false;
+        let begins =
+            self.active.iter().filter(|(_, active)| !std::mem::replace(&mut before, *active) && *active);
+        begins.map(|(frame, _)| self.time_s(*frame)).map(|end| exact(end).unwrap_or(end)).collect()
+    }
+
+    /// Part of the slow frames within a span in which a muscle was active.
+    pub fn active_part(&self, span_s: RangeInclusive<f64>) -> f64 {
+        let within = self.active.iter().filter(|(frame, _)| span_s.contains(&self.time_s(*frame)));
+        let (all, active) = within.fold((0u32, 0u32), |(all, sum), own| (all + 1, sum + u32::from(own.1)));
+        f64::from(active) / f64::from(all.max(1))
     }
 
     fn stretches(&self, edges: &Edges) -> Vec<Verdict> {

@@ -2,16 +2,13 @@
 
 mod common;
 
-mod acts;
 mod behaviours;
 mod cut_wires;
-mod emg;
 mod failures;
 mod feedback;
 mod golden;
 mod gripper;
 mod lines;
-mod onsets;
 mod recipes;
 mod recordings;
 mod reflex;

@@ -66,13 +66,9 @@ fn a_recipe_names_the_clock_and_its_unit() {
 }
 
 #[test]
-fn what_is_not_text_is_refused_by_row() {
+fn what_is_not_text_is_refused_by_row_and_a_missing_file_is_named() {
     let error = Recording::parse(&b"t,a\n0,1\n1,\xff\xfe\n"[..], "r.csv").unwrap_err().to_string();
     assert!(error.starts_with("r.csv:3: not text"), "{error}");
-}
-
-#[test]
-fn a_missing_file_is_named() {
     let error = Recording::read("no/such/file.csv".as_ref(), &Time::default()).unwrap_err().to_string();
     assert!(error.starts_with("no/such/file.csv: cannot be read"), "{error}");
 }

@@ -5,7 +5,7 @@ use std::fmt;
 
 use tenax_hal_shim::channel::{FRAMES_PER_SLOW_FRAME, SCANS_PER_FRAME};
 use tenax_hal_shim::detector::DetectorSet;
-use tenax_hal_shim::frame::{Frame, Scan};
+use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::motor::Duty;
 use tenax_hal_shim::schedule::{Job, slot_of};
 use tenax_hal_shim::wire::{Answer, Down, Event, EventKind, Received, Slow, Up};
@@ -36,22 +36,18 @@ impl Said {
     }
 }
 
-/// Puts codes that were recorded on any board through the host's build of the logic.
-///
-/// `device` is the board as it was before the start ([`kept::device`](super::kept::device)), `pressed` the frames in which it
-/// took a press of the button. `commands` are those that the board took, in order, each with the sequence number of the
-/// frame before whose tick it took it. No frame may have been lost. Scans that do not fill a frame are left out.
-pub fn host_says(
-    scans: &[Scan],
-    device: Device,
-    pressed: &[u32],
-    commands: &[(u32, Received<Down>)],
-) -> Said {
-    let (frames, _) = scans.as_chunks::<SCANS_PER_FRAME>();
+/// The host's decisions on a run's codes and commands. Scans that do not fill a frame are left out.
+pub fn host_says(run: &Run) -> Said {
+    let (frames, _) = run.scans.as_chunks::<SCANS_PER_FRAME>();
     let frames = (0..).zip(frames).map(|(sequence, scans)| Frame::from_scans(sequence, scans));
-    host_decides(frames, device, pressed, commands)
+    let device = device(run.trusts_line, run.calibrated.as_ref());
+    host_decides(frames, device, &presses(&run.events), &run.taken)
 }
 
+/// Puts frames of any board, none of them lost, through the host's build of the logic.
+///
+/// `device` is the board as it was before the start, `pressed` the frames in which it took a press of the button, `commands` those
+/// that it took, in order, each with the frame before whose tick it took it.
 pub fn host_decides(
     frames: impl Iterator<Item = Frame>,
     mut device: Device,
@@ -103,12 +99,7 @@ impl Agreement {
     }
 
     pub fn with_host(run: &Run) -> (Self, Said) {
-        let host = host_says(
-            &run.scans,
-            device(run.trusts_line, run.calibrated.as_ref()),
-            &presses(&run.events),
-            &run.taken,
-        );
+        let host = host_says(run);
         let agreement = Self {
             slows: run.slows.len(),
             events: run.events.len(),
@@ -167,8 +158,13 @@ fn difference(run: &Run, host: &Said) -> Option<String> {
         })
 }
 
-/// Where two lists begin to differ, of which the image's has at least `due`.
-fn first<T: PartialEq + fmt::Debug>(what: &str, image: &[T], host: &[T], due: usize) -> Option<String> {
+/// The first difference of two lists, of which the board's has at least `due` entries.
+pub(crate) fn first<T: PartialEq + fmt::Debug>(
+    what: &str,
+    image: &[T],
+    host: &[T],
+    due: usize,
+) -> Option<String> {
     if let Some((n, (image, host))) =
         image.iter().zip(host).enumerate().find(|(_, (image, host))| image != host)
     {

@@ -1,6 +1,7 @@
 //! A recording: a CSV file with a time column and one column a signal.
 
 use std::io::Read;
+use std::ops::RangeInclusive;
 use std::path::Path;
 
 use csv::StringRecord;
@@ -138,6 +139,10 @@ impl Recording {
 
     pub fn first_s(&self) -> f64 {
         self.t_s[0]
+    }
+
+    pub fn span_s(&self) -> RangeInclusive<f64> {
+        self.first_s()..=self.t_s[self.t_s.len() - 1]
     }
 
     pub fn duration_s(&self) -> f64 {

@@ -1,19 +1,16 @@
 //! What only a recording has to tell: its own peak and onset beside the fingertip's detections.
 
-use std::ops::RangeInclusive;
 use std::path::Path;
 
 use serde::Serialize;
 use tenax_hal_shim::detector::DetectorId;
-use tenax_hal_shim::wire::Slow;
 
 use super::wearer::Wearer;
-use crate::board::Recorder;
 use crate::recipe::Named;
 use crate::replay::facts::{Crest, crest, doubts, muscle_onset_s};
 use crate::replay::meaning::{Meaning, Motion};
 use crate::replay::{Recipe, Recording};
-use crate::timeline::{Timeline, frame_end_s};
+use crate::timeline::Timeline;
 
 #[derive(Clone, Debug, Serialize)]
 pub struct Replay {
@@ -85,37 +82,12 @@ pub struct Muscle {
     pub reflex_while_active: u64,
 }
 
-#[derive(Clone, Debug)]
-pub struct ActivePart {
-    zero_s: f64,
-    within_s: RangeInclusive<f64>,
-    all: u32,
-    active: u32,
-}
-
-impl ActivePart {
-    pub fn new(recording: &Recording, zero_s: f64) -> Self {
-        let first_s = recording.first_s();
-        Self { zero_s, within_s: first_s..=first_s + recording.duration_s(), all: 0, active: 0 }
-    }
-}
-
-impl Recorder for ActivePart {
-    fn slow(&mut self, slow: &Slow) {
-        if self.within_s.contains(&(self.zero_s + frame_end_s(slow.frame))) {
-            self.all += 1;
-            self.active += u32::from(slow.wearer_active);
-        }
-    }
-}
-
 impl Replay {
     pub fn new(
         recording: &Recording,
         named: Option<&Named<Recipe>>,
         lead_in_s: f64,
         timeline: &Timeline,
-        active: &ActivePart,
         wearer: &Wearer,
     ) -> anyhow::Result<Self> {
         let recipe = named.map(|named| &named.recipe);
@@ -138,7 +110,8 @@ impl Replay {
             },
             muscle: match recipe {
                 Some(recipe) if recipe.maps_a_muscle() => {
-                    Some(Muscle::new(muscle_onset_s(recording, recipe)?, active, wearer))
+                    let onset_s = muscle_onset_s(recording, recipe)?;
+                    Some(Muscle::new(onset_s, timeline.active_part(recording.span_s()), wearer))
                 }
                 _ => None,
             },
@@ -166,13 +139,13 @@ impl Force {
 }
 
 impl Muscle {
-    fn new(onset_s: Option<f64>, active: &ActivePart, wearer: &Wearer) -> Self {
+    fn new(onset_s: Option<f64>, active_part: f64, wearer: &Wearer) -> Self {
         let noticed_s = wearer.active_first_s;
         Self {
             onset_s,
             noticed_s,
             onset_delay_ms: onset_s.zip(noticed_s).map(|(onset, noticed)| (noticed - onset) * 1e3),
-            active_part: f64::from(active.active) / f64::from(active.all.max(1)),
+            active_part,
             reflex_while_active: wearer.reflex_while_active,
         }
     }

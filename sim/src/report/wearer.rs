@@ -11,7 +11,7 @@ use tenax_hal_shim::frame::Scan;
 use tenax_hal_shim::front_end::MYO_REST_MV;
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::schedule::SCHEDULE;
-use tenax_hal_shim::wire::{Slow, TickRecord};
+use tenax_hal_shim::wire::Slow;
 use tenax_hal_shim::words::DriveSource;
 use tenax_logic::emg::decide::Decide;
 use tenax_logic::emg::level::FLOOR_UV;
@@ -106,8 +106,8 @@ pub struct Judge {
     /// When which electrode is known to be off, s: what it gives is no activity.
     pub deaf: Vec<(usize, Range<f64>)>,
     scans: Vec<Scan>,
-    frames: usize,
-    active: Frames,
+    /// Whether a muscle was active at the pins, by frame.
+    active: Vec<bool>,
     wish_since: Option<usize>,
     opened: bool,
     slowest: Option<usize>,
@@ -149,7 +149,7 @@ impl Recorder for Judge {
     fn scan(&mut self, codes: &Scan, drive: MotorDrive, _slipping: bool) {
         self.scans.push(*codes);
         if self.scans.len() == SCANS_PER_FRAME {
-            self.muscles.take(self.frames, &self.scans);
+            self.muscles.take(self.active.len(), &self.scans);
             self.scans.clear();
             self.frame(drive.opens());
         }
@@ -158,29 +158,24 @@ impl Recorder for Judge {
     fn slow(&mut self, slow: &Slow) {
         self.slow_frames += 1;
         self.active_slow_frames += u64::from(slow.wearer_active);
-        for (_, tick) in ticks(slow) {
+        for (frame, tick) in ticks(slow) {
+            if tick.source == DriveSource::Reflex && tick.drive != MotorDrive::Coast {
+                self.reflex_ticks += 1;
+                self.reflex_while_active += u64::from(self.active.get(frame as usize) == Some(&true));
+            }
             let wearers = tick.source == DriveSource::Wearer;
             self.closed.push(wearers && tick.drive.closes());
             self.opened_by_muscle.push(wearers && tick.drive.opens());
-        }
-        let by_reflex =
-            |tick: &TickRecord| tick.source == DriveSource::Reflex && tick.drive != MotorDrive::Coast;
-        for (frame, _) in ticks(slow).filter(|(_, tick)| by_reflex(tick)) {
-            self.reflex_ticks += 1;
-            self.reflex_while_active += u64::from(self.active.contains(frame as usize));
         }
     }
 }
 
 impl Judge {
     fn frame(&mut self, opens: bool) {
-        let frame = self.frames;
-        self.frames += 1;
+        let frame = self.active.len();
         let t_s = frame as f64 / f64::from(FRAME_HZ);
         let hears = |n: usize| !self.deaf.iter().any(|(deaf, s)| *deaf == n && s.contains(&t_s));
-        if self.muscles.active(self.on_mv, hears) {
-            self.active.push(frame);
-        }
+        self.active.push(self.muscles.active(self.on_mv, hears));
         let wishes = self.opening.is_some_and(|opening| opening.is_wished(self.muscles));
         match (wishes, opens) {
             // Interrupted: a wish that has taken effect and is not proven yet may wait for its proof, and one of a sensor that is
@@ -200,7 +195,6 @@ impl Judge {
     pub fn verdict(&self, active_first_s: Option<f64>, faults: usize) -> Wearer {
         let seconds = |ticks: u64| ticks as f64 / f64::from(FRAME_HZ);
         Wearer {
-            none: false,
             reflex_while_active: self.reflex_while_active,
             open_latency_ms: self.slowest.map(|frames| frames as f64 * 1e3 / f64::from(FRAME_HZ)),
             active_first_s,
@@ -211,25 +205,7 @@ impl Judge {
             longest_open_ms: 1e3 * seconds(self.opened_by_muscle.longest),
             longest_close_ms: 1e3 * seconds(self.closed.longest),
             faults,
-            vibration_steps: 0,
-            vibration_s: 0.0,
+            ..Wearer::default()
         }
-    }
-}
-
-#[derive(Clone, Debug, Default)]
-struct Frames(Vec<Range<usize>>);
-
-impl Frames {
-    fn push(&mut self, frame: usize) {
-        match self.0.last_mut() {
-            Some(stretch) if stretch.end == frame => stretch.end += 1,
-            _ => self.0.push(frame..frame + 1),
-        }
-    }
-
-    fn contains(&self, frame: usize) -> bool {
-        let begun = self.0.partition_point(|stretch| stretch.start <= frame);
-        begun.checked_sub(1).is_some_and(|last| self.0[last].contains(&frame))
     }
 }

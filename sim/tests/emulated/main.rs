@@ -8,8 +8,6 @@ mod faults;
 mod hash;
 mod last;
 mod link;
-#[path = "../common/onsets.rs"]
-mod onsets;
 mod resets;
 mod store;
 mod streams;

@@ -12,8 +12,8 @@ use rigless::device::{ErasedDevice, ResetCause};
 use rigless::emulator::{Access, AccessKind, Host, Stop};
 use rigless::mcu::Mcu;
 use rigless::session::Session;
-use rigless::soc::stm32f427::{CPU, Stm32f427};
 use rigless::soc::stm32f427::generated::flash::Register;
+use rigless::soc::stm32f427::{CPU, Stm32f427};
 use rigless::soc::{Bus, EraseBlocks, Error, Region, Width};
 use rigless::time::VirtualNanos;
 
