@@ -80,7 +80,6 @@ impl Recorded {
         }
     }
 
-    /// Where the board and the host differ first. What the recording holds no more, because it ended, is not compared.
     fn difference(&self, slows: &[Slow], events: &[Event]) -> Option<String> {
         let mut host = slows.iter();
         for board in self.slows.iter().filter(|slow| (slow.frame as usize) < self.frames.len()) {

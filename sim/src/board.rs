@@ -1,7 +1,5 @@
-//! The boards that a plant can be connected to, and what a run on one leaves behind.
-//!
-//! What comes 80 times a second or more is handed to a [`Recorder`] while the run goes, so that a long run takes no more
-//! memory than a short one. What is rare is in the [`Summary`]. A [`Run`] is the recorder that keeps everything.
+//! The boards that a plant can be connected to, and the record of a run. A [`Recorder`] hears of what comes 80 times a second or more,
+//! the [`Summary`] has what is rare, and a [`Run`] is the recorder that keeps everything.
 
 pub mod agreement;
 #[cfg(feature = "emulator")]
@@ -21,7 +19,6 @@ use tenax_logic::emg::model::EmgModel;
 
 pub use recorder::Recorder;
 
-/// What the core spent, in instructions of the emulated Cortex-M4.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TickCost {
     pub count: u64,
@@ -64,7 +61,6 @@ pub struct Run {
     pub drives: Vec<MotorDrive>,
     pub slipping: Vec<bool>,
     pub slows: Vec<Slow>,
-    /// Every byte that came up the line: what `tenax monitor` would have read.
     pub line: Vec<u8>,
 }
 

@@ -1,7 +1,5 @@
-//! An hour of everyday disturbances in which nothing slips: walking, knocks, doors, tremor, the motor, mains, drifting sensors.
-//!
-//! A pulse here is a pulse without need. What has no measured value is drawn for each minute, over the ranges of its sources, and stands
-//! in the scene's text with the seed that it was drawn from.
+//! An hour of everyday disturbances in which nothing slips, so that a pulse is one without need. What has no measured value is drawn for
+//! each minute, over the ranges of its sources.
 
 use std::fmt::Write;
 

@@ -35,7 +35,6 @@ pub enum CsvError {
     Unreadable { file: String, source: io::Error },
     #[error("{file}: {what}")]
     File { file: String, what: String },
-    /// Of a row, by its line in the file, from 1; the header is line 1.
     #[error("{file}:{line}: {what}")]
     Row { file: String, line: u64, what: String },
 }

@@ -51,7 +51,6 @@ pub struct Report {
     #[serde(flatten)]
     pub added: added::Sums,
     pub object: reflex::Object,
-    /// What the hand did by itself because it was asked to.
     pub behaviours: Vec<behaviours::Ran>,
     pub detectors: scores::Detectors,
     pub faults: Vec<FaultLine>,

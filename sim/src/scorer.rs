@@ -72,7 +72,6 @@ pub enum Outcome {
     Caught(f64),
     /// The first detection began so long after macro onset, s.
     Late(f64),
-    /// Nothing began; a verdict stood at the micro onset.
     SaidBefore,
     Missed,
 }

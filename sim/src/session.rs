@@ -1,16 +1,4 @@
 //! One run: from what is to be run, on which board, to its report and its figure.
-//!
-//! ```
-//! use tenax_sim::session::{self, Board};
-//! use tenax_hal_shim::detector::DetectorId;
-//!
-//! let file = session::load_scene("glass")?;
-//! let outcome = session::scene(&file, 1, &Board::Host, &mut |_virtual_s| {})?;
-//! assert_eq!(outcome.report.slip.dropped, Some(false));
-//! let s1 = outcome.report.detectors.of_id(DetectorId::S1);
-//! println!("S1 said slip {} times, was believed {} times", s1.said, s1.detections);
-//! # Ok::<(), anyhow::Error>(())
-//! ```
 
 pub mod controls;
 mod witness;
@@ -33,7 +21,7 @@ use crate::board::simulated::{frames_in, seconds_of};
 use crate::board::{Recorder, Run, Summary, simulated};
 use crate::disturbances;
 use crate::input;
-use crate::plot::Figure;
+use crate::plot::sheet::Sheet;
 
 use crate::figure::panels;
 use crate::live::{Served, Use};
@@ -108,7 +96,7 @@ impl Board {
 pub struct Outcome {
     pub run: Summary,
     pub report: Report,
-    pub figure: Figure,
+    pub figure: Sheet,
     pub truth: Fate,
 }
 
@@ -239,7 +227,6 @@ pub fn replay_served(
     Ok(Outcome { run, report, figure, truth: Fate::default() })
 }
 
-/// What a line says that was captured or recorded: its report and its figure. What the plant did is not known.
 pub fn recorded(name: &str, line: &[u8]) -> anyhow::Result<Outcome> {
     let mut run = Summary::default();
     let mut slows = Run::default();
@@ -262,7 +249,7 @@ fn told(
     run: &Summary,
     witness: Witness,
     [truth, bound]: [Option<&Fate>; 2],
-) -> (Report, Figure, Timeline) {
+) -> (Report, Sheet, Timeline) {
     let Witness { timeline, judge, added, sketch } = witness;
     let subject =
         Subject { scene, board, seed, run, timeline: &timeline, judge: &judge, added: &added, truth, bound };

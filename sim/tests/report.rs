@@ -3,7 +3,7 @@
 use crate::common::{parsed, ran, text};
 use serde_json::Value;
 use tenax_hal_shim::detector::DetectorId;
-use tenax_sim::plot::draw;
+use tenax_sim::plot::sheet::draw;
 use tenax_sim::report::bound::{Bound, SAME_MM};
 use tenax_sim::report::fate::Fate;
 use tenax_sim::session::{self, Board, Outcome, controls};

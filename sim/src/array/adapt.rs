@@ -1,6 +1,4 @@
-//! A stranger's array: whether a network may judge it.
-//!
-//! A network has learned on arrays of some noise and refuses what lies outside of that: it would take it for slip or for rest.
+//! Whether a network may judge an array: one of another noise than it has learned on is refused.
 
 use std::collections::BTreeMap;
 

@@ -1,7 +1,5 @@
-//! The two edges of a verdict: the confidence at which slip begins, and the one at which it is over.
-//!
-//! Who begins to say slip only when sure and stays with it until it is unlikely gives few false alarms and still has most of a
-//! slip's steps right. With one edge for both, a confidence that trembles about it makes one alarm after the other.
+//! The two edges of a verdict: the confidence at which slip begins, and the one at which it is over. With one edge for both, a
+//! confidence that trembles about it makes one alarm after the other.
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};

@@ -93,7 +93,6 @@ pub struct Agreement {
 }
 
 impl Agreement {
-    /// Of a run and the host's logic. The run must have lost no frame and not restarted.
     pub fn of(run: &Run) -> Self {
         Self::with_host(run).0
     }

@@ -63,7 +63,6 @@ impl Default for Options {
     }
 }
 
-/// Something that a board must survive.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Mishap {
     /// The converter's DMA stream switches off: the converter overruns.
@@ -96,9 +95,7 @@ pub enum Broken {
     NeverScanned,
 }
 
-/// Boots `image`, runs the plant to its end and keeps everything.
-///
-/// `progress` is told the virtual time now and then, s.
+/// Boots `image`, runs the plant to its end and keeps everything. `progress` is told the virtual time now and then, s.
 /// Fails if the image cannot be read or placed, or what it does would destroy a real board.
 pub fn run<P: Plant + 'static>(
     image: &Path,

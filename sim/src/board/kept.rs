@@ -1,5 +1,4 @@
-//! What a board holds before the start when somebody has set it up: whether its line is trusted, and the calibration to the
-//! wearer of what is played. In flash for the emulated board, in the device for the host's.
+//! Records that a board holds before the start: whether its line is trusted, and the calibration to the wearer of what is played.
 
 use anyhow::Context;
 use tenax_hal_shim::flash::{BLANK, FlashArea, FlashFailed, Sector};
@@ -80,7 +79,6 @@ impl Sectors {
         Self(vec![BLANK; 2 * SECTOR_WORDS])
     }
 
-    /// With one more record. It must have room.
     pub fn saving(mut self, kept: Kept, payload: &[u8]) -> Self {
         let (mut log, _) = open(&mut self, Erase::Allowed);
         let mut saving = log.begin(kept, payload).expect("room");

@@ -1,6 +1,4 @@
-//! The host's own build of the logic, wired to a plant directly: no converter, no core.
-//!
-//! Its timing is the image's: what a frame decides drives the plant from the next scan on. So is its line, byte for byte but
+//! The host's own build of the logic, wired to a plant directly: no converter, no core. Its timing and its line are the image's, but
 //! for what [`uplink`] says.
 
 mod ahead;
@@ -33,9 +31,7 @@ pub enum Grips {
     Constant(f64),
 }
 
-/// Runs the plant to its end under the fingertip and keeps everything.
-///
-/// `progress` is told the virtual time now and then, s.
+/// Runs the plant to its end and keeps everything. `progress` is told the virtual time now and then, s.
 pub fn run<P: Plant>(plant: P, progress: &mut dyn FnMut(f64)) -> (Run, P) {
     let mut run = Run::default();
     let (summary, plant) = record(plant, &mut run, progress);
@@ -162,7 +158,6 @@ pub(crate) fn seconds_of(frames: u32) -> f64 {
     f64::from(frames) * SCANS_PER_FRAME as f64 / f64::from(SCAN_HZ)
 }
 
-/// Whole frames in `duration_s`.
 pub(crate) fn frames_in(duration_s: f64) -> u32 {
     (duration_s * f64::from(SCAN_HZ) / SCANS_PER_FRAME as f64) as u32
 }

@@ -15,7 +15,7 @@ use tenax_scene::{SceneFile, builtin};
 use crate::again;
 use crate::board::Recorder;
 use crate::live::{Live, Person, Use};
-use crate::plot::draw;
+use crate::plot::sheet::draw;
 use crate::replay;
 use crate::report::text::Text;
 use crate::session::{self, Board, Outcome};

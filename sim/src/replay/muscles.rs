@@ -21,7 +21,6 @@ pub struct Muscles {
 }
 
 impl Muscles {
-    /// Reads a recording through its recipe's front end; `recipe` in place of the one that its name calls for.
     pub fn read(path: &Path, recipe: Option<&str>, seed: u64) -> anyhow::Result<Self> {
         let (recording, named) = library::read(path, recipe)?;
         let mut plant = match named {

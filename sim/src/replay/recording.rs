@@ -49,7 +49,6 @@ impl Recording {
         Self::timed(source, &file, time)
     }
 
-    /// Reads from anything, with seconds in `t` or `t_s`; `file` is what errors call it.
     pub fn parse(source: impl Read, file: &str) -> Result<Self, CsvError> {
         Self::timed(source, file, &Time::default())
     }

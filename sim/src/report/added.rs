@@ -103,7 +103,6 @@ impl Grips {
         (t_s * f64::from(TRACE_HZ)) as usize
     }
 
-    /// The rows of a stretch with its settling, and the place of the first.
     fn rows(&self, stretch: &Stretch) -> (usize, &[[f32; 2]]) {
         let (from, to) =
             (Self::row(frame_end_s(stretch.from)), Self::row(frame_end_s(stretch.to + SETTLED_FRAMES)));

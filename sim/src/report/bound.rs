@@ -45,7 +45,6 @@ impl Bound {
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Control {
-    /// What it is: `no reflex`, `constant grip`, `s1 alone`, `without s1`.
     pub name: String,
     pub distance_mm: f64,
     pub peak_force_n: Option<f64>,

@@ -33,7 +33,6 @@ pub struct Replay {
 #[derive(Clone, Debug, Serialize)]
 pub struct Meant {
     pub wants: Motion,
-    /// What it must not do.
     pub never: Vec<Motion>,
     /// For how long it did what the wearer wants, s. Null where they want it to rest.
     pub wanted_s: Option<f64>,

@@ -1,8 +1,5 @@
-//! The flash as an array of words, which `rigless` leaves out of its model of the flash interface.
-//!
-//! The interface's registers are rigless's: keys, locks, the time of an erase. What a store into the array and the end of
-//! an erase do to the words is drawn here, and that the core stands still meanwhile, since it executes from the same bank
-//! (RM0383, section 3.5). The chip's memories are the F411's, not the F427's.
+//! The flash as an array of words, which `rigless` leaves out: what a store and the end of an erase do to them, with the core standing
+//! still meanwhile (RM0383, section 3.5). The chip's memories are the F411's, not the F427's.
 
 use std::collections::VecDeque;
 use std::iter::repeat_n;

@@ -56,7 +56,6 @@ impl Mishaps {
         }
     }
 
-    /// Does what is due at `scan`.
     pub fn happen(
         &mut self,
         scan: usize,

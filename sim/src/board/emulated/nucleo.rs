@@ -1,8 +1,5 @@
-//! The NUCLEO-F411RE as the emulator sees it.
-//!
-//! `rigless` has no STM32F411, but its STM32F427 has every peripheral that this chip has, at the same addresses, and runs
-//! the unmodified image. What differs is not used: more timers, a faster clock. The memories are the F411's. There is no MPU:
-//! with regions on, the emulator looks up every access, 2.7 times as long.
+//! The NUCLEO-F411RE as the emulator sees it: `rigless`'s STM32F427, which has every peripheral of the F411 at the same address, with
+//! the F411's memories. There is no MPU: with its regions on, every access is looked up, which takes 2.7 times as long.
 
 use std::num::{NonZeroU32, NonZeroU64};
 

@@ -56,7 +56,6 @@ impl<'a> Wires<'a> {
         self.board.peek(self.now, address) as u32
     }
 
-    /// What the select lines S0 to S3 show.
     pub fn select(&mut self) -> u8 {
         (self.peek(GPIOB_ODR) >> 12 & 0xF) as u8
     }
@@ -86,7 +85,6 @@ impl<'a> Wires<'a> {
         (alternate && on).then_some(Duty::per_mille(per_mille as u16))
     }
 
-    /// How the vibration motor on PB6 is driven: the pin is the timer's, the timer counts, and its output is on.
     pub fn vibration(&mut self) -> Duty {
         let compare = self.peek(TIM4_CCR1);
         let wired = compare > 0

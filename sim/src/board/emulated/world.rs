@@ -1,5 +1,4 @@
-//! What goes on around the chip while the emulator runs it: every 125 us a plant's scan goes in, and what the chip does
-//! comes out.
+//! The world around the emulated chip: every 125 us a plant's scan goes in, and what the chip does comes out.
 
 use std::collections::VecDeque;
 use std::ops::Range;

@@ -1,8 +1,5 @@
-//! The host board's line up: what it posts, numbered and encoded as the image does it.
-//!
-//! What differs from the image's line: of the counters it has frames, ticks and what came down, since nothing is ever
-//! lost, late or dropped here; and within a slow frame the counters come at other instants, for the image's clock starts
-//! before its first scan.
+//! The host board's line up, numbered and encoded as the image does it. Its counters have frames, ticks and what came down alone, and
+//! come at other instants within a slow frame.
 
 use tenax_hal_shim::channel::FRAME_HZ;
 use tenax_hal_shim::wire::{Counters, Up};
