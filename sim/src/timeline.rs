@@ -10,12 +10,22 @@ use tenax_hal_shim::words::Cause;
 use crate::board::Recorder;
 use crate::scorer::Verdict;
 
+/// A stretch of frames in which something was said. It goes on where it has no end.
+#[derive(Clone, Copy, Debug)]
+struct Stretch {
+    from: u32,
+    to: Option<u32>,
+    by_wearer: bool,
+}
+
+type Said = Vec<Stretch>;
+
 #[derive(Clone, Debug, Default)]
 pub struct Timeline {
     zero_s: f64,
-    said: [Edges; DetectorId::COUNT],
-    believed: [Edges; DetectorId::COUNT],
-    acted: [Edges; DetectorId::COUNT],
+    said: [Said; DetectorId::COUNT],
+    believed: [Said; DetectorId::COUNT],
+    acted: [Said; DetectorId::COUNT],
     /// The last frame of each slow frame, and whether a muscle was active in it.
     active: Vec<(u32, bool)>,
 }
@@ -24,17 +34,21 @@ impl Recorder for Timeline {
     fn slow(&mut self, slow: &Slow) {
         for (frame, tick) in ticks(slow) {
             let by_set = [&mut self.said, &mut self.believed, &mut self.acted];
-            for (edges, set) in by_set.into_iter().zip([tick.said, tick.believed, tick.acted]) {
-                push(edges, set, frame, slow.wearer_active);
+            for (said, set) in by_set.into_iter().zip([tick.said, tick.believed, tick.acted]) {
+                push(said, set, frame, slow.wearer_active);
             }
         }
         self.active.push((slow.frame, slow.wearer_active));
     }
 }
 
-fn push(all: &mut [Edges; DetectorId::COUNT], set: DetectorSet, frame: u32, by_wearer: bool) {
-    for (edges, id) in all.iter_mut().zip(DetectorId::ALL) {
-        edges.push(frame, set.contains(id), by_wearer);
+fn push(all: &mut [Said; DetectorId::COUNT], set: DetectorSet, frame: u32, by_wearer: bool) {
+    for (said, id) in all.iter_mut().zip(DetectorId::ALL) {
+        match (said.last_mut().filter(|last| last.to.is_none()), set.contains(id)) {
+            (None, true) => said.push(Stretch { from: frame, to: None, by_wearer }),
+            (Some(last), false) => last.to = Some(frame),
+            _ => {}
+        }
     }
 }
 
@@ -99,14 +113,18 @@ impl Timeline {
         f64::from(active) / f64::from(all.max(1))
     }
 
-    fn stretches(&self, edges: &Edges) -> Vec<Verdict> {
-        let ends = edges.ends.iter().map(|&frame| self.time_s(frame)).chain([f64::INFINITY]);
-        let verdict = |((&frame, &by_wearer), to_s)| Verdict { from_s: self.time_s(frame), to_s, by_wearer };
-        edges.frames.iter().zip(&edges.by_wearer).zip(ends).map(verdict).collect()
+    fn stretches(&self, said: &Said) -> Vec<Verdict> {
+        let to_s = |end: Option<u32>| end.map_or(f64::INFINITY, |frame| self.time_s(frame));
+        let verdict = |own: &Stretch| Verdict {
+            from_s: self.time_s(own.from),
+            to_s: to_s(own.to),
+            by_wearer: own.by_wearer,
+        };
+        said.iter().map(verdict).collect()
     }
 
-    fn times_s(&self, edges: &Edges) -> Vec<f64> {
-        edges.frames.iter().map(|&frame| self.time_s(frame)).collect()
+    fn times_s(&self, said: &Said) -> Vec<f64> {
+        said.iter().map(|own| self.time_s(own.from)).collect()
     }
 }
 
@@ -117,25 +135,4 @@ pub(crate) fn frame_end_s(frame: u32) -> f64 {
 pub(crate) fn ticks(slow: &Slow) -> impl Iterator<Item = (u32, &TickRecord)> {
     let first = slow.frame.saturating_sub(u32::from(FRAMES_PER_SLOW_FRAME) - 1);
     (first..).zip(&slow.ticks)
-}
-
-#[derive(Clone, Debug, Default)]
-struct Edges {
-    before: bool,
-    frames: Vec<u32>,
-    ends: Vec<u32>,
-    by_wearer: Vec<bool>,
-}
-
-impl Edges {
-    fn push(&mut self, frame: u32, now: bool, by_wearer: bool) {
-        if now && !self.before {
-            self.frames.push(frame);
-            self.by_wearer.push(by_wearer);
-        }
-        if self.before && !now {
-            self.ends.push(frame);
-        }
-        self.before = now;
-    }
 }

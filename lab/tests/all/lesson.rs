@@ -2,22 +2,21 @@
 
 use std::path::Path;
 
-use tenax_frames::tool::image;
 use tenax_hal_shim::channel::FRAME_HZ;
 use tenax_lab::learn::chain::Chain;
 use tenax_lab::learn::finger::Finger;
 use tenax_lab::learn::trial::Setup;
 use tenax_sim::board::agreement::Agreement;
-use tenax_sim::board::emulated::{self, Options};
 use tenax_sim::board::simulated;
+use tenax_sim::session::Board;
 
 /// What `tenax learn` says of all its trials: the camera teaches over the line, and every weight is the host's.
 #[test]
 fn a_lesson_teaches_the_image_what_it_teaches_the_host() {
     let lesson = || Chain::new(vec![Setup::new(&Finger::plain(1), 7, true).expect("a lesson")]);
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the package is in the workspace");
-    let elf = image::build(root).expect("the image");
-    let (image, _) = emulated::run(&elf, lesson(), &Options::default(), &mut |_| {}).expect("the run");
+    let board = Board::emulated(root).expect("the image");
+    let (image, _) = board.run(lesson(), &mut |_| {}).expect("the run");
     let agreement = Agreement::of(&image);
     assert!(agreement.holds(), "{agreement}");
     let network = image.networks().next().expect("it was asked for");

@@ -22,16 +22,13 @@ use rigless::time::VirtualNanos;
 use tenax_hal_shim::channel::{SCAN_HZ, SCANS_PER_FRAME};
 use tenax_scene::plant::Plant;
 
-use self::cost::CostMeter;
 use self::coupling::Coupling;
-use self::flash::FlashArray;
-use self::mishaps::Mishaps;
 use self::nucleo::Nucleo;
 use self::world::{Stretch, World};
 use super::kept::{Provision, Sectors};
 use super::line_log::LineLog;
 use super::simulated::frames_in;
-use super::{FlashUse, Recorder, Run, Summary};
+use super::{FlashUse, Recorder, Summary};
 use crate::image::symbols::Symbols;
 
 #[derive(Clone, Debug)]
@@ -85,31 +82,8 @@ pub enum Mishap {
     BridgeIsOff(bool),
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub enum Broken {
-    #[error(
-        "the image drove both sides of the motor bridge at {at_s} s: on a real board this shorts the supply"
-    )]
-    BothSides { at_s: f64 },
-    #[error("the image had not begun to scan three seconds after its start")]
-    NeverScanned,
-}
-
-/// Boots `image`, runs the plant to its end and keeps everything. `progress` is told the virtual time now and then, s.
+/// Boots `image` and runs the plant to its end; `recorder` is told of it as it goes, `progress` the virtual time now and then, s.
 /// Fails if the image cannot be read or placed, or what it does would destroy a real board.
-pub fn run<P: Plant + 'static>(
-    image: &Path,
-    plant: P,
-    options: &Options,
-    progress: &mut dyn FnMut(f64),
-) -> Result<(Run, P)> {
-    let mut run = Run::default();
-    let (summary, plant) = record(image, plant, options, &mut run, progress)?;
-    run.summary = summary;
-    Ok((run, plant))
-}
-
-/// Boots `image` and runs the plant to its end; `recorder` is told of it as it goes. Fails as [`run`] does.
 pub fn record<P: Plant + 'static>(
     image: &Path,
     plant: P,
@@ -140,19 +114,13 @@ fn closed_loop(
         provision.calibrated = None;
     }
     let (sender, reports) = mpsc::channel();
-    let cost = CostMeter::new(&symbols);
-    let [tick, after_tick] = cost.watched();
-    let mishaps = Mishaps::new(&options.mishaps);
-    let flash = FlashArray::new(1_000 * options.word_us);
-    let watched = [tick, after_tick, symbols.command];
-    let mut world = World::new(plant, frames, mishaps, cost, flash, &symbols, sender);
-    world.coupling = options.coupling;
+    let world = World::new(plant, frames, options, &symbols, sender);
+    let watched = [symbols.tick, symbols.after_tick, symbols.command];
     let mut images =
         vec![Image::read(image, None).context("reading the image")?, cost::paint(&symbols.stack)?];
-    let kept = Sectors::provisioned(&provision).image();
-    if let Some((address, bytes)) = options.flash.clone().or(Some(kept)) {
-        images.push(Image::new(Path::new("flash"), bytes, Some(address))?);
-    }
+    let kept = || Sectors::provisioned(&provision).image();
+    let (address, bytes) = options.flash.clone().unwrap_or_else(kept);
+    images.push(Image::new(Path::new("flash"), bytes, Some(address))?);
     let rate = options.instructions_per_second;
 
     // The emulator keeps its driver for itself, so it runs on a thread of its own and reports to this one.
@@ -172,7 +140,7 @@ fn closed_loop(
 
     let mut world = finished.driver;
     if let Some(broken) = world.broken {
-        return Err(broken.into());
+        return Err(broken);
     }
     // What the last scans led to had time to come up the line; what came after them was no part of the run.
     let mut taken = world.taken(&heard.answers);

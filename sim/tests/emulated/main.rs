@@ -23,8 +23,8 @@ use tenax_scene::World;
 use tenax_scene::plant::{Pins, Plant};
 use tenax_sim::board::Run;
 use tenax_sim::board::agreement::Agreement;
-use tenax_sim::board::emulated::{self, Options};
-use tenax_sim::session;
+use tenax_sim::board::emulated::Options;
+use tenax_sim::session::{self, Board};
 
 fn image() -> &'static Path {
     static IMAGE: OnceLock<PathBuf> = OnceLock::new();
@@ -127,7 +127,8 @@ fn scene(name: &str) -> World {
 }
 
 fn run(plant: impl Plant + 'static, options: &Options) -> Run {
-    emulated::run(image(), plant, options, &mut |_| {}).expect("the run").0
+    let board = Board::Emulated { image: image().to_owned(), options: options.clone() };
+    board.run(plant, &mut |_| {}).expect("the run").0
 }
 
 fn plain() -> &'static Run {

@@ -5,6 +5,7 @@ use std::ops::Range;
 use std::sync::mpsc::Sender;
 use std::sync::{Arc, Mutex, PoisonError};
 
+use anyhow::anyhow;
 use rigless::emulator::{Driver, Host, Settled, Stop};
 use rigless::session::Session;
 use rigless::time::VirtualNanos;
@@ -14,7 +15,7 @@ use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::wire::{Answer, Down, Received, Receiver};
 use tenax_scene::plant::Plant;
 
-use super::Broken;
+use super::Options;
 use super::cost::{CostMeter, stack_used};
 use super::coupling::Coupling;
 use super::flash::FlashArray;
@@ -43,9 +44,9 @@ pub struct World {
     plant: Arc<Mutex<dyn Plant>>,
     pub tick_cost: Option<TickCost>,
     pub stack_bytes: Option<u64>,
-    pub broken: Option<Broken>,
-    pub cost: CostMeter,
-    pub coupling: Option<Coupling>,
+    pub broken: Option<anyhow::Error>,
+    cost: CostMeter,
+    coupling: Option<Coupling>,
     sent_commands: VecDeque<Received<Down>>,
     taken_before: Vec<u32>,
     pub flash: FlashArray,
@@ -71,9 +72,7 @@ impl World {
     pub fn new(
         plant: Arc<Mutex<dyn Plant>>,
         frames: u32,
-        mishaps: Mishaps,
-        cost: CostMeter,
-        flash: FlashArray,
+        options: &Options,
         symbols: &Symbols,
         reports: Sender<Stretch>,
     ) -> Self {
@@ -82,11 +81,11 @@ impl World {
             tick_cost: None,
             stack_bytes: None,
             broken: None,
-            cost,
-            coupling: None,
+            cost: CostMeter::new(symbols),
+            coupling: options.coupling,
             sent_commands: VecDeque::new(),
             taken_before: Vec::new(),
-            flash,
+            flash: FlashArray::new(1_000 * options.word_us),
             scans: frames as usize * SCANS_PER_FRAME,
             scanned: 0,
             drained: 0,
@@ -96,7 +95,7 @@ impl World {
             encoder: Encoder::default(),
             sent: Receiver::new(),
             feedback: Vec::new(),
-            mishaps,
+            mishaps: Mishaps::new(&options.mishaps),
             resets: 0,
             executed: None,
             stack: symbols.stack.clone(),
@@ -127,7 +126,10 @@ impl World {
         let mut wires = Wires::new(session.board_mut(), stop.at);
         if self.scanned < self.scans {
             let Some(drive) = wires.motor() else {
-                self.broken = Some(Broken::BothSides { at_s: seconds(stop.at) });
+                self.broken = Some(anyhow!(
+                    "the image drove both sides of the motor bridge at {} s: on a real board this shorts the supply",
+                    seconds(stop.at)
+                ));
                 return None;
             };
             let vibration = wires.vibration();
@@ -238,7 +240,7 @@ impl Driver<Nucleo> for World {
                 return None;
             }
         } else if self.stepped_at.is_none() && stop.at.0 > BOOT_NS {
-            self.broken = Some(Broken::NeverScanned);
+            self.broken = Some(anyhow!("the image had not begun to scan three seconds after its start"));
             return None;
         }
         Some(VirtualNanos(stop.at.0 + if pulse { SCAN_NS } else { SEEK_NS }))
