@@ -68,36 +68,12 @@ pub struct Ticks {
     pub core_load_percent: Option<[f64; 2]>,
 }
 
-impl Ticks {
-    fn of(run: &Summary) -> Self {
-        let cost = run.tick_cost;
-        Self {
-            count: run.counters.ticks,
-            dropped: run.counters.frames_lost + run.counters.ticks_late,
-            instructions_mean: cost.map(|cost| cost.instructions_mean),
-            instructions_max: cost.map(|cost| cost.instructions_max),
-            load_percent: cost.map(|cost| load_percent(cost.instructions_mean * f64::from(FRAME_HZ))),
-            core_load_percent: cost.map(|cost| load_percent(cost.instructions_per_s)),
-        }
-    }
-}
-
 /// What the core executes, in instructions. Null on a board whose instructions are not counted.
 #[derive(Clone, Debug, Serialize)]
 pub struct Load {
     pub tick_instructions_mean: Option<f64>,
     /// A period of 0.5 ms, mean: everything that the core executed, by the number of frames.
     pub period_instructions_mean: Option<f64>,
-}
-
-impl Load {
-    fn of(run: &Summary) -> Self {
-        let cost = run.tick_cost;
-        Self {
-            tick_instructions_mean: cost.map(|cost| cost.instructions_mean),
-            period_instructions_mean: cost.map(|cost| cost.instructions_per_s / f64::from(FRAME_HZ)),
-        }
-    }
 }
 
 fn load_percent(instructions_per_s: f64) -> [f64; 2] {
@@ -145,6 +121,7 @@ impl Report {
     /// Makes a report; [`Report::replay`] is for whoever played a recording.
     pub fn new(subject: &Subject) -> Self {
         let (run, timeline) = (subject.run, subject.timeline);
+        let (cost, frame_hz) = (run.tick_cost, f64::from(FRAME_HZ));
         let reflex = reflex::Reflex::of(subject.added, timeline, &run.events, subject.truth);
         Self {
             scene: subject.scene.to_owned(),
@@ -153,8 +130,18 @@ impl Report {
             virtual_s: run.virtual_s,
             wall_s: run.wall_s,
             overruns: run.counters.overruns,
-            ticks: Ticks::of(run),
-            load: Load::of(run),
+            ticks: Ticks {
+                count: run.counters.ticks,
+                dropped: run.counters.frames_lost + run.counters.ticks_late,
+                instructions_mean: cost.map(|cost| cost.instructions_mean),
+                instructions_max: cost.map(|cost| cost.instructions_max),
+                load_percent: cost.map(|cost| load_percent(cost.instructions_mean * frame_hz)),
+                core_load_percent: cost.map(|cost| load_percent(cost.instructions_per_s)),
+            },
+            load: Load {
+                tick_instructions_mean: cost.map(|cost| cost.instructions_mean),
+                period_instructions_mean: cost.map(|cost| cost.instructions_per_s / frame_hz),
+            },
             stack_bytes: run.stack_bytes,
             slip: scores::Slip::of(timeline, subject.truth),
             bound: bound::Bound::of(subject.truth, subject.bound),

@@ -168,7 +168,7 @@ fn judged(
     let world = World::new(file, seed);
     let calibrated = world.calibrated().as_ref().map(model_of).transpose()?;
     let teller = line.live.as_ref().map(|live| live.teller().clone()).unwrap_or_default();
-    let plant = line.of(Drawn::telling(world, span_s, teller));
+    let plant = line.of(Drawn::new(world, span_s, teller));
     let mut witness = Witness::new(0.0, span_s, calibrated.as_ref());
     witness.judge.deaf = file.lifts().collect();
     let (run, Served { mut plant, .. }) = board.record(plant, &mut (&mut witness, recorder), progress)?;
@@ -205,11 +205,7 @@ pub fn replay_served(
     progress: &mut dyn FnMut(f64),
 ) -> anyhow::Result<Outcome> {
     let (recording, named) = library::read(path, recipe)?;
-    let plant = match &named {
-        Some(named) => ReplayPlant::new(&recording, &named.recipe, seed)
-            .with_context(|| format!("recipe {}", named.name))?,
-        None => ReplayPlant::plain(&recording, seed)?,
-    };
+    let plant = ReplayPlant::of(&recording, named.as_ref(), seed)?;
     let (zero_s, end_s) = (plant.time_zero_s(), plant.time_zero_s() + plant.duration_s());
     // Of the rows held before and after, as much as shows where the recording begins and ends.
     let margin_s = (0.05 * recording.duration_s()).max(0.02);

@@ -84,30 +84,31 @@ pub fn presses(events: &[Event]) -> Vec<u32> {
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Agreement {
-    slows: usize,
-    events: usize,
-    commands: usize,
-    networks: usize,
-    feedback: usize,
+    compared: String,
     difference: Option<String>,
 }
 
 impl Agreement {
+    /// Between a run, which must have lost no frame and not restarted, and the host's logic.
     pub fn of(run: &Run) -> Self {
         Self::with_host(run).0
     }
 
     pub fn with_host(run: &Run) -> (Self, Said) {
         let host = host_says(run);
-        let agreement = Self {
-            slows: run.slows.len(),
-            events: run.events.len(),
-            commands: run.taken.len(),
-            networks: run.networks().count(),
-            feedback: run.feedback.len(),
-            difference: difference(run, &host),
-        };
-        (agreement, host)
+        let (slows, networks) = (run.slows.len(), run.networks().count());
+        let ticks = slows * usize::from(FRAMES_PER_SLOW_FRAME);
+        let mut compared = format!("{slows} slow frames with {ticks} ticks, {} events", run.events.len());
+        for (count, what) in [
+            (run.taken.len(), format!("{} commands' answers", run.taken.len())),
+            (networks, format!("the network {networks} times")),
+            (run.feedback.len(), format!("the vibration motor's {} steps", run.feedback.len())),
+        ] {
+            if count > 0 {
+                compared += &format!(", {what}");
+            }
+        }
+        (Self { compared, difference: difference(run, &host) }, host)
     }
 
     pub const fn holds(&self) -> bool {
@@ -117,21 +118,10 @@ impl Agreement {
 
 impl fmt::Display for Agreement {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if let Some(difference) = &self.difference {
-            return write!(f, "DIFFERS: {difference}");
+        match &self.difference {
+            Some(difference) => write!(f, "DIFFERS: {difference}"),
+            None => write!(f, "{}, equal", self.compared),
         }
-        let ticks = self.slows * usize::from(FRAMES_PER_SLOW_FRAME);
-        write!(f, "{} slow frames with {ticks} ticks, {} events", self.slows, self.events)?;
-        if self.commands > 0 {
-            write!(f, ", {} commands' answers", self.commands)?;
-        }
-        if self.networks > 0 {
-            write!(f, ", the network {} times", self.networks)?;
-        }
-        if self.feedback > 0 {
-            write!(f, ", the vibration motor's {} steps", self.feedback)?;
-        }
-        f.write_str(", equal")
     }
 }
 

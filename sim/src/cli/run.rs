@@ -129,7 +129,10 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     }
     let mut recording = args.record.as_deref().map(Recording::create).transpose()?;
     let line_use = Use { live: live(), streams_at_start: recording.is_some() };
-    let recorder = &mut (&mut (&mut line, &mut server), &mut recording);
+    let (mut no_server, mut no_recording) = ((), ());
+    let to_server = server.as_mut().map_or::<&mut dyn Recorder, _>(&mut no_server, |own| own);
+    let to_recording = recording.as_mut().map_or::<&mut dyn Recorder, _>(&mut no_recording, |own| own);
+    let recorder = &mut (&mut (&mut line, to_server), to_recording);
     let outcome = match &subject {
         Subject::Recording(file, recording) => {
             let progress = Progress::new("replay", recording.duration_s());

@@ -23,10 +23,7 @@ pub struct Muscles {
 impl Muscles {
     pub fn read(path: &Path, recipe: Option<&str>, seed: u64) -> anyhow::Result<Self> {
         let (recording, named) = library::read(path, recipe)?;
-        let mut plant = match named {
-            Some(named) => ReplayPlant::new(&recording, &named.recipe, seed)?,
-            None => ReplayPlant::plain(&recording, seed)?,
-        };
+        let mut plant = ReplayPlant::of(&recording, named.as_ref(), seed)?;
         let from_s = plant.time_zero_s() - recording.first_s();
         let mut pair = [None; 2];
         let mut pairs = Vec::new();

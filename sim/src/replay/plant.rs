@@ -13,6 +13,7 @@ use super::filter::{Pass, pass};
 use super::recipe::{ForceMap, HoldForce, Map, RemoveOffset};
 use super::resample::Grid;
 use super::{Recipe, Recording};
+use crate::recipe::Named;
 
 /// Noise of the converter and its wiring on every pin, mV rms: half a code (assumed). Without it a channel that the
 /// recording lacks would read one code for ever, as only a broken sensor does.
@@ -69,6 +70,15 @@ pub struct ReplayPlant {
 }
 
 impl ReplayPlant {
+    pub fn of(recording: &Recording, named: Option<&Named<Recipe>>, seed: u64) -> anyhow::Result<Self> {
+        match named {
+            Some(Named { name, recipe }) => {
+                Self::new(recording, recipe, seed).with_context(|| format!("recipe {name}"))
+            }
+            None => Self::plain(recording, seed),
+        }
+    }
+
     pub fn new(recording: &Recording, recipe: &Recipe, seed: u64) -> anyhow::Result<Self> {
         let mut plant =
             Self::empty(recording, *recipe.lead_in_s.get_ref(), *recipe.lead_out_s.get_ref(), seed);

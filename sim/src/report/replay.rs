@@ -91,6 +91,18 @@ impl Replay {
     ) -> anyhow::Result<Self> {
         let recipe = named.map(|named| &named.recipe);
         let used = |column: &str| recipe.is_none_or(|recipe| recipe.uses(column));
+        let muscle = |recipe: &Recipe| -> anyhow::Result<Muscle> {
+            let (onset_s, noticed_s) = (muscle_onset_s(recording, recipe)?, wearer.active_first_s);
+            Ok(Muscle {
+                onset_s,
+                noticed_s,
+                onset_delay_ms: onset_s.zip(noticed_s).map(|(onset, noticed)| (noticed - onset) * 1e3),
+                active_part: timeline.active_part(recording.span_s()),
+                reflex_while_active: wearer.reflex_while_active,
+            })
+        };
+        let muscle = recipe.filter(|recipe| recipe.maps_a_muscle()).map(muscle).transpose()?;
+        let force = |recipe| -> anyhow::Result<Force> { Ok(Force::new(crest(recording, recipe)?, timeline)) };
         Ok(Self {
             recording: recording.file().to_owned(),
             recipe: named.map(|named| named.name.clone()),
@@ -101,19 +113,8 @@ impl Replay {
             unused_columns: recording.signals().filter(|column| !used(column)).map(str::to_owned).collect(),
             assumed: recipe.map_or_else(Vec::new, assumed),
             doubts: recipe.map_or_else(|| Ok(Vec::new()), |recipe| doubts(recording, recipe))?,
-            force: match recipe {
-                Some(recipe) if recipe.force.is_some() => {
-                    Some(Force::new(crest(recording, recipe)?, timeline))
-                }
-                _ => None,
-            },
-            muscle: match recipe {
-                Some(recipe) if recipe.maps_a_muscle() => {
-                    let onset_s = muscle_onset_s(recording, recipe)?;
-                    Some(Muscle::new(onset_s, timeline.active_part(recording.span_s()), wearer))
-                }
-                _ => None,
-            },
+            force: recipe.filter(|recipe| recipe.force.is_some()).map(force).transpose()?,
+            muscle,
             meant: recipe
                 .and_then(|recipe| recipe.meaning_of(file_name(recording)))
                 .map(|meaning| Meant::new(meaning, wearer)),
@@ -123,8 +124,7 @@ impl Replay {
 
 impl Force {
     fn new(crest: Option<Crest>, timeline: &Timeline) -> Self {
-        let first = |id| timeline.believed(id).first().copied();
-        let (s1, s2) = (first(DetectorId::S1), first(DetectorId::S2));
+        let [s1, s2] = [DetectorId::S1, DetectorId::S2].map(|id| timeline.believed(id).first().copied());
         let before_ms = |first: Option<f64>| Some((crest?.peak_s - first?) * 1e3);
         Self {
             peak_ratio: crest.map(|crest| crest.peak_ratio),
@@ -133,19 +133,6 @@ impl Force {
             s2_before_peak_ms: before_ms(s2),
             s1_first_s: s1,
             s1_before_peak_ms: before_ms(s1),
-        }
-    }
-}
-
-impl Muscle {
-    fn new(onset_s: Option<f64>, active_part: f64, wearer: &Wearer) -> Self {
-        let noticed_s = wearer.active_first_s;
-        Self {
-            onset_s,
-            noticed_s,
-            onset_delay_ms: onset_s.zip(noticed_s).map(|(onset, noticed)| (noticed - onset) * 1e3),
-            active_part,
-            reflex_while_active: wearer.reflex_while_active,
         }
     }
 }
