@@ -23,8 +23,7 @@ pub struct Recorded {
 }
 
 impl Recorded {
-    /// From a line's bytes; of several starts, the last. Fails if something that decides is not in them: says what, and how it is
-    /// recorded.
+    /// From a line's bytes; of several starts, the last. Fails if something that decides is not in them.
     pub fn of(line: &[u8]) -> anyhow::Result<Self> {
         let (mut inbox, mut recorded, mut starts) = (Inbox::default(), Self::default(), 0);
         for heard in line.iter().filter_map(|&byte| inbox.push(byte)).flatten() {

@@ -12,7 +12,7 @@ use tenax_hal_shim::words::Kept;
 use tenax_scene::Act;
 use tenax_scene::plant::{Pins, Plant};
 
-use tenax_frames::serve::{Down, Teller};
+use tenax_frames::serve::Down;
 
 const LAG_MAX: Duration = Duration::from_millis(100);
 /// Scans between two looks at the clock: 1 ms.
@@ -21,7 +21,7 @@ const BITS_PER_BYTE: u32 = 10;
 const PRESSED: Duration = Duration::from_millis(300);
 
 pub struct Live {
-    down: Down,
+    pub down: Down,
     /// What the real line could have carried by now and did not, in bytes times [`SCAN_HZ`]: below 0 it is busy.
     room: i64,
     pace: Pace,
@@ -68,10 +68,6 @@ impl Person {
 impl Live {
     pub fn new(down: Down, person: Person) -> Self {
         Self { down, room: 0, pace: Pace::default(), person }
-    }
-
-    pub const fn teller(&self) -> &Teller {
-        &self.down.teller
     }
 
     fn bytes(&mut self) -> Vec<u8> {
@@ -186,6 +182,7 @@ impl<P: Plant> Plant for Served<P> {
 mod tests {
     use super::*;
     use std::sync::mpsc::sync_channel;
+    use tenax_frames::serve::Teller;
 
     #[test]
     fn clients_bytes_come_down_no_faster_than_on_the_real_line() {

@@ -21,8 +21,7 @@ pub struct RecipeError {
 pub type Checked = Result<(), (Range<usize>, String)>;
 
 pub trait Kind: DeserializeOwned + 'static {
-    /// Name and text of every one in `recipes/`, built in, so that the tool finds them wherever it is run. A test holds them
-    /// against the folder.
+    /// Name and text of every one in `recipes/`.
     const BUILTIN: &'static [(&'static str, &'static str)];
 
     /// Names of the files that it is taken for when no recipe is given; `*` and `?` match as in a shell.

@@ -21,10 +21,8 @@ use crate::board::Summary;
 use crate::timeline::Timeline;
 
 const CORE_HZ: f64 = 100e6;
-/// Cycles an instruction takes on average, at least and at most: a Cortex-M4 runs most instructions in one cycle, single
-/// loads in two and taken branches in two to four, and the flash's three wait states are added wherever its prefetch and
-/// cache miss. The emulated core counts instructions, not cycles, and no real board has been measured, so a load is a
-/// bracket, and a wide one.
+/// Cycles an instruction takes on average, at least and at most: one for most, up to four for loads and branches, and three wait states
+/// where the flash's cache misses. The emulated core counts instructions, and no real board has been measured.
 pub const CYCLES_PER_INSTRUCTION: [f64; 2] = [1.0, 3.0];
 
 /// A report. Its keys are stable: `tests/report.rs` lists them. Null where a thing did not happen.

@@ -9,6 +9,7 @@ use std::path::Path;
 use std::path::PathBuf;
 
 use anyhow::{Context, bail};
+use tenax_frames::link::Inbox;
 use tenax_scene::plant::Plant;
 use tenax_scene::{SceneFile, World, builtin};
 
@@ -16,7 +17,6 @@ use self::witness::{Drawn, Witness};
 #[cfg(feature = "emulator")]
 use crate::board::emulated;
 use crate::board::kept::model_of;
-use crate::board::line_log::LineLog;
 use crate::board::simulated::{frames_in, seconds_of};
 use crate::board::{Recorder, Run, Summary, simulated};
 use crate::disturbances;
@@ -141,8 +141,7 @@ pub fn scene_alone(
     judged(file, seed, board, line, recorder, &mut |_| {}, &|_| None)
 }
 
-/// As [`scene`], with the board's line used so; `recorder` is told of the scene's run as it goes. `progress` hears of an infinite time
-/// while the bound is searched, which can take longer than the run.
+/// As [`scene`], with the board's line used so. `progress` hears of an infinite time while the bound is searched.
 pub fn scene_served(
     file: &SceneFile,
     seed: u64,
@@ -167,7 +166,7 @@ fn judged(
     let span_s = (0.0, seconds_of(frames_in(file.duration_s())));
     let world = World::new(file, seed);
     let calibrated = world.calibrated().as_ref().map(model_of).transpose()?;
-    let teller = line.live.as_ref().map(|live| live.teller().clone()).unwrap_or_default();
+    let teller = line.live.as_ref().map(|live| live.down.teller.clone()).unwrap_or_default();
     let plant = line.of(Drawn::new(world, span_s, teller));
     let mut witness = Witness::new(0.0, span_s, calibrated.as_ref());
     witness.judge.deaf = file.lifts().collect();
@@ -193,8 +192,7 @@ pub fn replay(
     replay_served(path, recipe, Use::default(), seed, board, &mut (), progress)
 }
 
-/// Plays a recording by a recipe, its name or file, or by the one that the recording's name calls for; `recorder` is told of the
-/// run as it goes.
+/// Plays a recording by a recipe, its name or file, or by the one that the recording's name calls for.
 pub fn replay_served(
     path: &Path,
     recipe: Option<&str>,
@@ -226,7 +224,7 @@ pub fn replay_served(
 pub fn recorded(name: &str, line: &[u8]) -> anyhow::Result<Outcome> {
     let mut run = Summary::default();
     let mut slows = Run::default();
-    LineLog::new(u32::MAX).hear(line, &mut run, &mut slows);
+    run.hear(&mut Inbox::default(), line, u32::MAX, &mut slows);
     let (Some(first), Some(last)) = (slows.slows.first(), slows.slows.last()) else {
         bail!("{name} has no slow frame: it is no board's line");
     };

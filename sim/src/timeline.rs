@@ -22,7 +22,8 @@ type Said = Vec<Stretch>;
 
 #[derive(Clone, Debug, Default)]
 pub struct Timeline {
-    zero_s: f64,
+    /// Added to virtual time, s.
+    pub zero_s: f64,
     said: [Said; DetectorId::COUNT],
     believed: [Said; DetectorId::COUNT],
     acted: [Said; DetectorId::COUNT],
@@ -57,11 +58,6 @@ impl Timeline {
         Self { zero_s, ..Self::default() }
     }
 
-    /// What is added to virtual time, s.
-    pub const fn zero_s(&self) -> f64 {
-        self.zero_s
-    }
-
     pub fn time_s(&self, frame: u32) -> f64 {
         self.zero_s + frame_end_s(frame)
     }
@@ -90,8 +86,7 @@ impl Timeline {
         self.times_s(&self.acted[id as usize])
     }
 
-    /// When a muscle became active, s: the tick in which the wearer took over if it was this that changed the mode, else
-    /// the end of the slow frame that first says so. `events` are the run's.
+    /// When a muscle became active, s: the tick in which the wearer took over, else the end of the slow frame that first says so.
     pub fn wearer(&self, events: &[Event]) -> Vec<f64> {
         let slow_frame_s = f64::from(FRAMES_PER_SLOW_FRAME) / f64::from(FRAME_HZ);
         let taken_over = events.iter().filter_map(|event| match event.kind {

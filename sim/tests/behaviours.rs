@@ -23,7 +23,7 @@ fn run(text: &str) -> Vec<Truth> {
 const BURSTS: &str = "[skin]\nwrong_part = 0.05\nwrong_pictures = 3";
 
 /// With the camera's own errors nothing is lost or crushed. With bursts nothing is lost, and at most one seed in eight is crushed: of 100
-/// seeds one crane and three cups are, and the goal is none. Wrong pictures come while the object hangs at the limit of its friction.
+/// seeds one crane and three cups are, and the goal is none.
 fn unharmed(name: &str) -> Vec<Truth> {
     let harmed = |more: &str| {
         let fates = fates(name, more);

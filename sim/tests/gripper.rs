@@ -25,8 +25,7 @@ fn a_gripper_keeps_what_it_lifts_and_one_that_waits_for_a_wearer_leaves_it_behin
     }
 }
 
-/// The robot lifts while its fingers still close, so that the block slips along them. In the control its
-/// motor counts as louder than slip.
+/// The robot lifts while its fingers still close. In the control its motor counts as louder than slip.
 // Shows R1.
 #[test]
 fn what_slips_while_a_robot_closes_is_answered() {

@@ -63,18 +63,3 @@ fn every_recipe_in_the_folder_is_built_in_and_good() {
     all_good::<Recipe>();
     all_good::<ArrayRecipe>();
 }
-
-#[test]
-fn every_shared_recording_has_exactly_one_recipe() {
-    for (file, expected) in [
-        ("friction_rig_10khz.csv", "friction_rig"),
-        ("friction_rig_5khz_wood.csv", "friction_rig"),
-        ("pvdf_slip_onset.csv", "pvdf"),
-        ("emg_two_channel_rest0.csv", "emg_two_channel"),
-        ("emg_bursts_1khz.csv", "emg_bursts"),
-    ] {
-        let is_for = |(_, text): &&(&str, &str)| Recipe::parse(text, "r.toml").unwrap().is_for(file);
-        let names: Vec<&str> = Recipe::BUILTIN.iter().filter(is_for).map(|(name, _)| *name).collect();
-        assert_eq!(names, [expected], "{file}");
-    }
-}

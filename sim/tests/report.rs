@@ -28,8 +28,6 @@ const KEYS: &str = "
 
 const DETECTOR_KEYS: [&str; 6] = ["first_s", "detections", "false_alarms", "said", "acted", "events"];
 
-const EVENT_KEYS: [&str; 6] = ["count", "caught", "early", "late", "said_before", "missed"];
-
 const LAST_KEYS: &str = "
     detectors.wearer.first_s detectors.wearer.detections detectors.wearer.false_alarms
     faults line.bytes line.messages_missed line.telemetry_dropped line.bad_frames
@@ -87,7 +85,7 @@ fn a_scenes_keys_are_stable() {
     let report = serde_json::to_value(&outcome.report).unwrap();
     assert_eq!(found(&report), expected("replay"));
     let events = &report["detectors"]["s1"]["events"];
-    for key in EVENT_KEYS {
+    for key in ["count", "caught", "early", "late", "said_before", "missed"] {
         assert!(events[key].is_u64(), "events.{key}");
     }
     let by = events["false_by"].as_object().unwrap();
@@ -102,8 +100,7 @@ const TOLERANCE: f64 = 0.03;
 
 #[test]
 fn no_hand_and_no_control_is_better_than_the_bound() {
-    // A patch, a rotation, a wearer, an array that dies, a turn, pulls, one that presses less. With TENAX_SCENES=all every scene of
-    // the repository, with its controls: ten minutes of a core.
+    // A patch, a rotation, a wearer, an array that dies, a turn, pulls. With TENAX_SCENES=all, in ten minutes: every scene and control.
     let few = ["steel-balls", "pour", "hold", "array-lost", "array-pick", "push-gentle", "turn-pen"];
     let whole = std::env::var("TENAX_SCENES").is_ok_and(|own| own == "all");
     let all = tenax_scene::builtin().iter().map(|(name, _)| *name);

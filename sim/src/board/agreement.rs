@@ -14,7 +14,7 @@ use tenax_logic::arming::DEBOUNCE_FRAMES;
 use tenax_logic::device::Device;
 
 use super::Run;
-use super::kept::device;
+use super::kept::Provision;
 
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Said {
@@ -40,14 +40,13 @@ impl Said {
 pub fn host_says(run: &Run) -> Said {
     let (frames, _) = run.scans.as_chunks::<SCANS_PER_FRAME>();
     let frames = (0..).zip(frames).map(|(sequence, scans)| Frame::from_scans(sequence, scans));
-    let device = device(run.trusts_line, run.calibrated.as_ref());
-    host_decides(frames, device, &presses(&run.events), &run.taken)
+    let provision =
+        Provision { trusts_line: run.trusts_line, calibrated: run.calibrated, ..Provision::default() };
+    host_decides(frames, provision.device(), &presses(&run.events), &run.taken)
 }
 
-/// Puts frames of any board, none of them lost, through the host's build of the logic.
-///
-/// `device` is the board as it was before the start, `pressed` the frames in which it took a press of the button, `commands` those
-/// that it took, in order, each with the frame before whose tick it took it.
+/// Puts frames of any board, none of them lost, through the host's build of the logic: `device` as it was before the start, the frames of
+/// each press of the button, and each command with the frame before whose tick it was taken.
 pub fn host_decides(
     frames: impl Iterator<Item = Frame>,
     mut device: Device,

@@ -19,6 +19,7 @@ use rigless::emulator::{self, Finished, Start, Watch};
 use rigless::image::Image;
 use rigless::session::Session;
 use rigless::time::VirtualNanos;
+use tenax_frames::link::Inbox;
 use tenax_hal_shim::channel::{SCAN_HZ, SCANS_PER_FRAME};
 use tenax_scene::plant::Plant;
 
@@ -26,23 +27,19 @@ use self::coupling::Coupling;
 use self::nucleo::Nucleo;
 use self::world::{Stretch, World};
 use super::kept::{Provision, Sectors};
-use super::line_log::LineLog;
 use super::simulated::frames_in;
 use super::{FlashUse, Recorder, Summary};
 use crate::image::symbols::Symbols;
 
 #[derive(Clone, Debug)]
 pub struct Options {
-    /// Instructions that the core executes in a second. At 100 MHz a Cortex-M4 takes one to two cycles for most, so
-    /// 100 and 50 millions are the ends of the bracket.
+    /// Instructions a second: 100 and 50 millions are the ends of the bracket, at one to two cycles each and 100 MHz.
     pub instructions_per_second: NonZeroU64,
     /// What goes wrong on the way, and when, s.
     pub mishaps: Vec<(f64, Mishap)>,
-    /// What the flash holds beside the image before the start: an address and the bytes from there on. None is a new chip, on
-    /// which a plant that trusts its line has set so before.
+    /// Contents of the flash beside the image: an address, and the bytes from there on. None: as the plant was set up.
     pub flash: Option<(u64, Vec<u8>)>,
-    /// How long the flash takes to program a word, us; the core stands still for as long. 16 typically, 100 at most
-    /// (DS10314, flash memory programming).
+    /// Time to program a word, us, in which the core stands still: 16 typically, 100 at most (DS10314).
     pub word_us: u64,
     /// What the bridge's edges leave in the films' codes. None: nothing.
     pub coupling: Option<Coupling>,
@@ -69,9 +66,7 @@ pub enum Mishap {
     /// The converter's DMA stream is sent where nothing is: its driver panics.
     DmaFails,
     /// The power goes for an instant while the flash programs the word after the next `words`.
-    PowerFails {
-        words: u32,
-    },
+    PowerFails(u32),
     BrownsOut,
     /// From now on the supply is so high, mV: the voltage detector says if it is too low. A brown-out's reset is not drawn by it.
     SupplyIs(u32),
@@ -124,7 +119,7 @@ fn closed_loop(
     let rate = options.instructions_per_second;
 
     // The emulator keeps its driver for itself, so it runs on a thread of its own and reports to this one.
-    let (mut heard, mut log, mut scanned) = (Summary::default(), LineLog::new(frames), 0);
+    let (mut heard, mut inbox, mut scanned) = (Summary::default(), Inbox::default(), 0);
     let finished = std::thread::scope(|scope| {
         let emulator = scope.spawn(move || execute(&images, rate, watched, world));
         for Stretch { scans, line } in reports {
@@ -132,7 +127,7 @@ fn closed_loop(
             for (codes, drive, slipping) in scans {
                 recorder.scan(&codes, drive, slipping);
             }
-            log.hear(&line, &mut heard, recorder);
+            heard.hear(&mut inbox, &line, frames, recorder);
             progress(scanned as f64 / f64::from(SCAN_HZ));
         }
         emulator.join().map_err(|_| anyhow!("the emulator panicked; its message is above"))?

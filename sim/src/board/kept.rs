@@ -67,10 +67,6 @@ impl Provision {
     }
 }
 
-pub fn device(trusts_line: bool, calibrated: Option<&EmgModel>) -> Device {
-    Provision { trusts_line, calibrated: calibrated.copied(), ..Provision::default() }.device()
-}
-
 #[derive(Clone, Debug)]
 pub struct Sectors(pub Vec<u32>);
 

@@ -94,11 +94,11 @@ fn closed_loop(
             *scan = scan_of_pins(&plant.scan(drive).codes(), select);
             commands.extend(plant.commands().into_iter().map(|message| down.number(message)));
             down.take(&plant.line_bytes());
-            up.recorder().scan(scan, drive, plant.slipping());
+            up.recorder.scan(scan, drive, plant.slipping());
         }
         commands.extend(down.command(sequence));
         for command in &commands {
-            up.summary().taken.push((sequence, *command));
+            up.summary.taken.push((sequence, *command));
             if let Some(message) = device.taken(command) {
                 up.post(message);
             }
@@ -133,7 +133,7 @@ fn closed_loop(
             device.slow_frame_passed();
             let duty = device.feedback();
             plant.vibrate(duty);
-            up.summary().vibrates(sequence, duty);
+            up.summary.vibrates(sequence, duty);
             if store.is_free()
                 && let Some(record) = device.next_record()
             {

@@ -18,7 +18,7 @@ use crate::live::{Live, Person, Use};
 use crate::plot::sheet::draw;
 use crate::replay;
 use crate::report::text::Text;
-use crate::session::{self, Board, Outcome};
+use crate::session::{self, Board};
 use tenax_frames::link::captured::is_recording;
 use tenax_frames::record::Recording;
 use tenax_frames::serve::{self, Down, Server};
@@ -152,7 +152,13 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     if let Some(server) = server {
         out::note!("  {:<14}{}", "served", server.close());
     }
-    let mut files = write(&outcome, &path)?;
+    let svg = draw::svg(&outcome.figure)?.into_bytes();
+    let mut files = Vec::new();
+    for (extension, bytes) in [("svg", svg), ("json", serde_json::to_vec_pretty(&outcome.report)?)] {
+        let path = path(extension);
+        fs::write(&path, bytes).with_context(|| format!("cannot write {}", path.display()))?;
+        files.push(path);
+    }
     if let (Some(recording), Some(path)) = (recording, &args.record) {
         recording.finish().with_context(|| format!("cannot write {}", path.display()))?;
         files.push(path.clone());
@@ -307,17 +313,4 @@ impl Recorder for LineFile {
 enum Subject<'a> {
     Recording(&'a Path, replay::Recording),
     Scene(Box<SceneFile>),
-}
-
-/// Writes figure and report, and says where.
-fn write(outcome: &Outcome, path: &dyn Fn(&str) -> PathBuf) -> anyhow::Result<Vec<PathBuf>> {
-    let svg = draw::svg(&outcome.figure)?;
-    let contents = [("svg", svg.into_bytes()), ("json", serde_json::to_vec_pretty(&outcome.report)?)];
-    let mut files = Vec::new();
-    for (extension, bytes) in contents {
-        let path = path(extension);
-        fs::write(&path, bytes).with_context(|| format!("cannot write {}", path.display()))?;
-        files.push(path);
-    }
-    Ok(files)
 }

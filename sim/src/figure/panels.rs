@@ -19,8 +19,8 @@ const SLIP: RGBColor = colour::PURPLE;
 const STRIP: (f64, f64) = (-150.0, -125.0);
 
 pub fn figure(subject: &Subject, sketch: Sketch) -> Sheet {
-    let span_s = sketch.span_s();
-    let strip = modes(subject, sketch.first_mode, sketch.end_s().unwrap_or(span_s.1), span_s);
+    let span_s = sketch.span_s;
+    let strip = modes(subject, sketch.first_mode, sketch.end_s.unwrap_or(span_s.1), span_s);
     let Sketch { forces, needs, ratio, s2, vibration, muscles, motor: drives, .. } = sketch;
     let in_force = |name, id| in_force(name, id, subject, span_s);
     let [normal, shear] = forces;
@@ -177,8 +177,8 @@ fn modes(
     });
     // What was in force before the first change: a run begins in standby, a recording perhaps in the middle.
     let first =
-        if changes.clone().next().is_none() || from_s > subject.timeline.zero_s() { first } else { None };
-    let mut begun = (first.unwrap_or_default(), subject.timeline.zero_s());
+        if changes.clone().next().is_none() || from_s > subject.timeline.zero_s { first } else { None };
+    let mut begun = (first.unwrap_or_default(), subject.timeline.zero_s);
     for next in changes.chain([(GripMode::default(), end_s.max(to_s))]) {
         let (mode, since_s) = std::mem::replace(&mut begun, next);
         let (from_s, to_s) = (since_s.max(from_s), next.1.min(to_s));

@@ -5,13 +5,11 @@ use std::path::Path;
 use anyhow::{Context, Result, ensure};
 use object::{File, Object, ObjectSection, SectionFlags, SectionKind, elf};
 
-/// The chip's flash for an image, bytes: all but the last two sectors, which outlive it. The image's build fails if it
-/// does not fit, so this is only for shares.
+/// Flash for an image, bytes: all but the last two sectors, which outlive it.
 pub const FLASH_BYTES: u64 = 256 * 1024;
 pub const RAM_BYTES: u64 = 128 * 1024;
 
-/// Bytes that an image takes before it runs. Its stack is measured by running it: see
-/// [`Run::stack_bytes`](crate::board::Run::stack_bytes).
+/// Bytes that an image takes before it runs, without its stack.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Size {
     pub flash: u64,

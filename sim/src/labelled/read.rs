@@ -18,8 +18,7 @@ pub fn read(path: &Path, recipe: &ArrayRecipe) -> Result<Vec<Recording>, CsvErro
     parse(source, recipe, &file)
 }
 
-/// Reads from anything; `file` is what errors call it. Recordings come in the order of their first rows.
-/// An error says which row is wrong, and what is allowed.
+/// Recordings in the order of their first rows; `file` is its name in errors, which say the row and what is allowed.
 pub fn parse(source: impl Read, recipe: &ArrayRecipe, file: &str) -> Result<Vec<Recording>, CsvError> {
     let mut reader = rows(source);
     let header = reader.headers().map_err(|error| CsvError::of(file, error))?.clone();
@@ -176,10 +175,8 @@ impl Open {
     }
 }
 
-/// Places on a recording's own rows at which the board would have read: row, and how far on the way to the next.
-///
-/// Between rows a signal is a straight line. A recording that is faster than 80 Hz is not low-passed first: the board's switched
-/// inputs would not do so either.
+/// Places on a recording's own rows at which the board would have read: row, and how far on the way to the next. A recording faster than
+/// 80 Hz is not low-passed first: the board's switched inputs would not do so either.
 fn instants(t_s: &[f64]) -> Vec<(usize, f64)> {
     let (Some(&first), Some(&last)) = (t_s.first(), t_s.last()) else { return Vec::new() };
     let rate_hz = f64::from(SLOW_HZ);

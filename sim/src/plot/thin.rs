@@ -2,8 +2,7 @@
 
 const COLUMNS: usize = 1_000;
 
-/// A curve that is thinned as it comes: of each column of pixels the first, lowest, highest and last point are kept, so that no
-/// spike is lost.
+/// A curve that is thinned as it comes to the first, lowest, highest and last point of each column of pixels.
 #[derive(Clone, Debug)]
 pub struct Thin {
     from_s: f64,

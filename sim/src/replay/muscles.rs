@@ -15,8 +15,7 @@ use super::{ReplayPlant, library};
 #[derive(Clone, Debug)]
 pub struct Muscles {
     pub duration_s: f64,
-    /// Time since the recording's first row, s, negative while the front end settles; and both, uV, flexor first, none where a
-    /// sensor gives no number.
+    /// Time since the first row, s, negative while the front end settles; flexor and extensor, uV, None where there is no number.
     pub pairs: Vec<(f64, [Option<i32>; 2])>,
 }
 

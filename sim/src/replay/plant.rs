@@ -15,8 +15,7 @@ use super::resample::Grid;
 use super::{Recipe, Recording};
 use crate::recipe::Named;
 
-/// Noise of the converter and its wiring on every pin, mV rms: half a code (assumed). Without it a channel that the
-/// recording lacks would read one code for ever, as only a broken sensor does.
+/// Noise on every pin, mV rms: half a code (assumed). One code for ever would be a broken sensor.
 const PIN_NOISE_MV: f64 = 0.4;
 
 const PLAIN_LEAD_IN_S: f64 = 1.0;
@@ -261,11 +260,7 @@ fn rest_v(index: usize) -> f64 {
 }
 
 fn mean<'a>(values: impl Iterator<Item = &'a f64>) -> Option<f64> {
-    let (mut sum, mut count) = (0.0, 0u32);
-    for value in values {
-        sum += value;
-        count += 1;
-    }
+    let (sum, count) = values.fold((0.0, 0u32), |(sum, count), value| (sum + value, count + 1));
     (count > 0).then(|| sum / f64::from(count))
 }
 

@@ -90,8 +90,7 @@ pub enum RemoveOffset {
     Value(f64),
 }
 
-/// Columns in newtons that press the four quadrants through the tilting element
-/// ([`front_end`](tenax_hal_shim::front_end)).
+/// Columns in newtons that press the four quadrants ([`front_end`](tenax_hal_shim::front_end)).
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ForceMap {

@@ -26,9 +26,7 @@ impl Grid {
         f64::from(SCAN_HZ) * self.per_scan as f64
     }
 
-    /// The series on the grid: straight lines between rows, the first and last row held outside.
-    ///
-    /// `t_s` must not decrease and must be as long as `values`.
+    /// The series on the grid: straight lines between rows, the first and last row held outside. `t_s` must not decrease.
     pub fn draw(&self, t_s: &[f64], values: &[f64]) -> Vec<f64> {
         let step_s = 1.0 / self.rate_hz();
         let mut next = 0;

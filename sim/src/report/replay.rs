@@ -72,8 +72,7 @@ pub struct Force {
 
 #[derive(Clone, Debug, Serialize)]
 pub struct Muscle {
-    /// When the muscle became active in the recording itself, s: the 50 ms centred mean of the rectified signal, at the
-    /// recipe's gain, passes the gate's threshold.
+    /// Onset in the recording itself, s: see [`muscle_onset_s`].
     pub onset_s: Option<f64>,
     pub noticed_s: Option<f64>,
     pub onset_delay_ms: Option<f64>,

@@ -26,8 +26,8 @@ const ON_MV: i64 = 160;
 pub struct Wearer {
     pub none: bool,
     pub reflex_while_active: u64,
-    /// The longest time from an opening wish at the pins to the motor opening, ms: from the first reading that is a fifth
-    /// above the calibrated opening, in its direction. Null where nobody wished to open, or nobody is calibrated.
+    /// The longest time from a reading a fifth above the calibrated opening to the motor opening, ms. Null where nobody wished to open, or
+    /// nobody is calibrated.
     pub open_latency_ms: Option<f64>,
     pub active_first_s: Option<f64>,
     pub active_permille: u64,
@@ -143,34 +143,7 @@ impl Judge {
         });
         Self { on_mv, opening: calibrated.map(Opening::of), ..Self::default() }
     }
-}
 
-impl Recorder for Judge {
-    fn scan(&mut self, codes: &Scan, drive: MotorDrive, _slipping: bool) {
-        self.scans.push(*codes);
-        if self.scans.len() == SCANS_PER_FRAME {
-            self.muscles.take(self.active.len(), &self.scans);
-            self.scans.clear();
-            self.frame(drive.opens());
-        }
-    }
-
-    fn slow(&mut self, slow: &Slow) {
-        self.slow_frames += 1;
-        self.active_slow_frames += u64::from(slow.wearer_active);
-        for (frame, tick) in ticks(slow) {
-            if tick.source == DriveSource::Reflex && tick.drive != MotorDrive::Coast {
-                self.reflex_ticks += 1;
-                self.reflex_while_active += u64::from(self.active.get(frame as usize) == Some(&true));
-            }
-            let wearers = tick.source == DriveSource::Wearer;
-            self.closed.push(wearers && tick.drive.closes());
-            self.opened_by_muscle.push(wearers && tick.drive.opens());
-        }
-    }
-}
-
-impl Judge {
     fn frame(&mut self, opens: bool) {
         let frame = self.active.len();
         let t_s = frame as f64 / f64::from(FRAME_HZ);
@@ -178,8 +151,7 @@ impl Judge {
         self.active.push(self.muscles.active(self.on_mv, hears));
         let wishes = self.opening.is_some_and(|opening| opening.is_wished(self.muscles));
         match (wishes, opens) {
-            // Interrupted: a wish that has taken effect and is not proven yet may wait for its proof, and one of a sensor that is
-            // lost rests.
+            // A wish that has taken effect may wait for its proof, and one of a lost sensor rests.
             (true, false) if self.opened => {}
             (true, false) => self.wish_since = self.wish_since.or(Some(frame)),
             // Answered; or given up before it was: then it waited for as long as it lasted.
@@ -206,6 +178,31 @@ impl Judge {
             longest_close_ms: 1e3 * seconds(self.closed.longest),
             faults,
             ..Wearer::default()
+        }
+    }
+}
+
+impl Recorder for Judge {
+    fn scan(&mut self, codes: &Scan, drive: MotorDrive, _slipping: bool) {
+        self.scans.push(*codes);
+        if self.scans.len() == SCANS_PER_FRAME {
+            self.muscles.take(self.active.len(), &self.scans);
+            self.scans.clear();
+            self.frame(drive.opens());
+        }
+    }
+
+    fn slow(&mut self, slow: &Slow) {
+        self.slow_frames += 1;
+        self.active_slow_frames += u64::from(slow.wearer_active);
+        for (frame, tick) in ticks(slow) {
+            if tick.source == DriveSource::Reflex && tick.drive != MotorDrive::Coast {
+                self.reflex_ticks += 1;
+                self.reflex_while_active += u64::from(self.active.get(frame as usize) == Some(&true));
+            }
+            let wearers = tick.source == DriveSource::Wearer;
+            self.closed.push(wearers && tick.drive.closes());
+            self.opened_by_muscle.push(wearers && tick.drive.opens());
         }
     }
 }

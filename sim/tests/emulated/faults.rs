@@ -27,8 +27,7 @@ fn an_overrun_costs_a_few_frames_and_is_told() {
         run.events.iter().any(|event| matches!(event.kind, EventKind::Fault(Fault::FramesLost { .. })));
     assert!(told, "{:?}", run.events);
 
-    // Sequence numbers kept time and the switches kept step: from the next slow frame on, the samples are those that
-    // the world had at those instants.
+    // From the next slow frame on, the samples are those that the world had at those instants.
     let host = host_says(&run).slows;
     let same: Vec<bool> =
         host.iter().zip(&run.slows).map(|(host, image)| host.samples_sum == image.samples_sum).collect();

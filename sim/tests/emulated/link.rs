@@ -14,7 +14,7 @@ const fn s2(permille: i32) -> Setting {
     Setting { id: SettingId::S2.number(), value: permille }
 }
 
-/// Every kind of command, 5,000 a second: more than the line is ever asked for, and as much as it carries.
+/// Every kind of command, 5,000 a second: as much as the line carries.
 // Shows L5.
 #[test]
 fn a_flood_of_commands_makes_no_tick_late() {

@@ -35,8 +35,7 @@ fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the package is in the workspace")
 }
 
-/// Every pin swings through the converter's range at its own phase, so that no two ever read alike for long; and somebody
-/// sends commands.
+/// Every pin swings through the converter's range at its own phase; and somebody sends commands.
 struct Swing {
     pins: Pins,
     swings: bool,

@@ -12,10 +12,11 @@ use crate::image::symbols::Symbols;
 
 #[derive(Debug, Default)]
 pub struct CostMeter {
-    tick: u64,
-    after_tick: u64,
+    pub tick: u64,
+    pub after_tick: u64,
     entered: Option<u64>,
-    count: u64,
+    /// Ticks so far.
+    pub count: u64,
     sum: u64,
     max: u64,
 }
@@ -23,10 +24,6 @@ pub struct CostMeter {
 impl CostMeter {
     pub fn new(symbols: &Symbols) -> Self {
         Self { tick: symbols.tick, after_tick: symbols.after_tick, ..Self::default() }
-    }
-
-    pub fn watched(&self) -> [u64; 2] {
-        [self.tick, self.after_tick]
     }
 
     pub fn hit(&mut self, hit: Hit) {
@@ -38,10 +35,6 @@ impl CostMeter {
             self.sum += instructions;
             self.max = self.max.max(instructions);
         }
-    }
-
-    pub const fn ticks(&self) -> u64 {
-        self.count
     }
 
     /// What it counted, given everything that the core executed in a second. None if there was no tick.

@@ -1,7 +1,6 @@
 //! The flash as an array of words, which `rigless` leaves out: what a store and the end of an erase do to them, with the core standing
 //! still meanwhile (RM0383, section 3.5). The chip's memories are the F411's, not the F427's.
 
-use std::collections::VecDeque;
 use std::iter::repeat_n;
 use std::num::{NonZeroU32, NonZeroU64};
 
@@ -86,7 +85,7 @@ pub struct FlashArray {
     word_ns: u64,
     pub words: u64,
     pub erases: u64,
-    power: VecDeque<u32>,
+    power: Option<u32>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -101,10 +100,9 @@ impl FlashArray {
         Self { word_ns, ..Self::default() }
     }
 
-    /// Has the power go while the word after the next `words` is programmed: half of its bits are. The words of a second cut are
-    /// counted from the first on.
+    /// Cuts the power while the word after the next `words` is programmed: half of its bits are.
     pub fn cut_power_after(&mut self, words: u32) {
-        self.power.push_back(words);
+        self.power = Some(words);
     }
 
     pub fn accessed(&mut self, access: &Access, session: &mut Session<Nucleo>, host: &mut dyn Host) {
@@ -134,10 +132,10 @@ impl FlashArray {
         }
         let old = host.read(access.address, Width::W32).unwrap_or(0);
         let mut programmed = old & access.value;
-        let cut = self.power.pop_front_if(|words| *words == 0).is_some();
+        let cut = self.power.take_if(|words| *words == 0).is_some();
         if cut {
             programmed |= old & 0xFFFF_0000;
-        } else if let Some(words) = self.power.front_mut() {
+        } else if let Some(words) = &mut self.power {
             *words -= 1;
         }
         let landed = host.program(access.address, Width::W32, programmed);

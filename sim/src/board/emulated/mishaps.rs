@@ -103,8 +103,7 @@ impl Mishaps {
                     let ended = board.peek(now, DMA2_LISR) & TCIF0;
                     let control = board.peek(now, DMA2_S0CR);
                     board.poke(now, DMA2_S0CR, control & !S0CR_EN);
-                    // That it was stopped for this is no end: the driver would read a frame that is not whole, and send the stream
-                    // back to its ring before it has stumbled.
+                    // Its end is no end: the driver would read half a frame, and restart the ring before it has stumbled.
                     board.poke(now, DMA2_LIFCR, TCIF0 & !ended);
                     board.poke(now, DMA2_S0M0AR, NOWHERE);
                     board.poke(now, DMA2_S0CR, control);
@@ -115,7 +114,7 @@ impl Mishaps {
                     }
                 }
                 Mishap::CoreHangs => host.hold(true),
-                Mishap::PowerFails { words } => flash.cut_power_after(words),
+                Mishap::PowerFails(words) => flash.cut_power_after(words),
                 Mishap::BridgeIsOff(is_off) => Wires::new(board, now).bridge_fault(is_off),
             }
         }

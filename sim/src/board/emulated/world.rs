@@ -201,9 +201,11 @@ impl Driver<Nucleo> for World {
     fn on_settled(&mut self, session: &mut Session<Nucleo>, host: &mut dyn Host, settled: Settled) {
         match settled {
             Settled::Hit(hit) if hit.address == self.command_entry => {
-                self.taken_before.push(self.cost.ticks() as u32)
+                self.taken_before.push(self.cost.count as u32)
             }
-            Settled::Hit(hit) if self.cost.watched().contains(&hit.address) => self.cost.hit(hit),
+            Settled::Hit(hit) if [self.cost.tick, self.cost.after_tick].contains(&hit.address) => {
+                self.cost.hit(hit)
+            }
             Settled::Access { access, .. } => {
                 self.flash.accessed(&access, session, host);
                 self.mishaps.accessed(&access, session);

@@ -228,22 +228,14 @@ fn name(axis: &Axis, place: f64) -> String {
     if axis.log { power(place) } else { format!("{}", (place * 1e6).round() / 1e6 + 0.0) }
 }
 
-/// 10 to the power of `place`, as people write it.
+/// 10 to the power of `place`, where that is whole.
 fn power(place: f64) -> String {
-    const RAISED: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
     let whole = place.round();
-    if (place - whole).abs() > 1e-6 {
-        return String::new();
-    }
     match whole as i32 {
+        _ if (place - whole).abs() > 1e-6 => String::new(),
         0 => "1".to_owned(),
         1 => "10".to_owned(),
-        n => {
-            let sign = if n < 0 { "⁻" } else { "" };
-            let digits = n.abs().to_string();
-            let raised = digits.bytes().map(|digit| RAISED[usize::from(digit - b'0')]);
-            format!("10{sign}{}", raised.collect::<String>())
-        }
+        n => format!("1e{n}"),
     }
 }
 
