@@ -13,16 +13,6 @@ pub enum Motion {
     Open,
 }
 
-impl Motion {
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Rest => "rest",
-            Self::Close => "close",
-            Self::Open => "open",
-        }
-    }
-}
-
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Meaning {

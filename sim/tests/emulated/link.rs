@@ -30,10 +30,7 @@ fn a_flood_of_commands_makes_no_tick_late() {
         Down::Drive { drive: MotorDrive::Open(duty), hold_ms: 250 },
     ];
     for stranger in [false, true] {
-        let mut plant = Swing::new(1.5);
-        if stranger {
-            plant = plant.stranger();
-        }
+        let mut plant = Swing { trusts_line: !stranger, ..Swing::new(1.5) };
         for n in 0..5_000u32 {
             plant = plant.sending(0.3 + f64::from(n) / 5_000.0, kinds[n as usize % kinds.len()]);
         }

@@ -72,11 +72,6 @@ impl Swing {
         self
     }
 
-    fn stranger(mut self) -> Self {
-        self.trusts_line = false;
-        self
-    }
-
     fn holding(mut self, at_s: f64, for_s: f64) -> Self {
         self.pressed_s = Some(at_s..at_s + for_s);
         self
