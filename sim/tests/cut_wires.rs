@@ -47,11 +47,9 @@ fn each_of_the_thirty_is_noticed_with_its_resistor_and_hardly_one_without() {
             (channel, ["cut", "open"].map(noticed))
         })
         .collect();
-    let late: Vec<_> = all
-        .iter()
-        .filter(|(_, [cut, _])| !cut.is_some_and(|(after_s, _)| (0.0..WITHIN_S).contains(&after_s)))
-        .map(|(channel, [cut, _])| (CHANNELS[*channel].name, cut))
-        .collect();
+    let in_time = |noticed: &Noticed| noticed.is_some_and(|(after_s, _)| (0.0..WITHIN_S).contains(&after_s));
+    let late = all.iter().filter(|(_, [cut, _])| !in_time(cut));
+    let late: Vec<_> = late.map(|(channel, [cut, _])| (CHANNELS[*channel].name, cut)).collect();
     assert!(late.is_empty(), "{late:?}");
     let unnoticed = all.iter().filter(|(_, [_, open])| open.is_none()).count();
     assert!(unnoticed >= 25, "the control: {unnoticed} of {} are not noticed", all.len());

@@ -87,10 +87,8 @@ impl Sectors {
     }
 
     pub fn provisioned(provision: &Provision) -> Self {
-        provision
-            .records()
-            .iter()
-            .fold(Self::blank(), |sectors, (kept, payload)| sectors.saving(*kept, payload))
+        let save = |sectors: Self, (kept, payload): &(Kept, Vec<u8>)| sectors.saving(*kept, payload);
+        provision.records().iter().fold(Self::blank(), save)
     }
 }
 

@@ -68,13 +68,11 @@ pub struct Map {
     pub column: String,
     pub channels: Vec<Spanned<String>>,
     pub remove_offset: Option<RemoveOffset>,
-    /// Corner of a second-order Butterworth high-pass, Hz.
+    /// Corners of second-order Butterworth filters, Hz; the envelope's low-pass stands behind the rectifier.
     pub high_pass_hz: Option<Spanned<f64>>,
-    /// Corner of a second-order Butterworth low-pass, Hz.
     pub low_pass_hz: Option<Spanned<f64>>,
     #[serde(default)]
     pub rectify: bool,
-    /// Corner of a second-order Butterworth low-pass behind the rectifier, Hz.
     pub envelope_hz: Option<Spanned<f64>>,
     pub gain: Spanned<f64>,
     pub offset_v: Option<Spanned<f64>>,
