@@ -9,6 +9,7 @@ mod feedback;
 mod golden;
 mod gripper;
 mod lines;
+mod onsets;
 mod recipes;
 mod recordings;
 mod reflex;
