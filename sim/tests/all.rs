@@ -2,10 +2,8 @@
 
 mod common;
 
-mod acts;
 mod behaviours;
 mod cut_wires;
-mod emg;
 mod failures;
 mod feedback;
 mod golden;
