@@ -3,10 +3,8 @@
 pub mod delay;
 pub mod emg;
 pub mod front;
-pub mod loads;
 pub mod photoelastic;
 pub mod table;
-pub mod vision;
 
 use tenax_sim::plot::sheet::Sheet;
 pub use tenax_sim::plot::sheet::draw::svg;

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use clap::ValueEnum;
 use tenax_frames::tool::{folder, format::Format, out, progress::with_bar, workspace};
 
-use crate::chart::{Chart, delay, emg, front, loads, photoelastic, table, vision};
+use crate::chart::{Chart, delay, emg, front, photoelastic, table};
 
 /// Recordings beside the checkout.
 const RECORDINGS: &str = "../shared/data";
@@ -36,8 +36,6 @@ enum Subject {
     Table,
     /// Force, slip rate and the region in which slip is seen of a photoelastic head
     Photoelastic,
-    /// Known loads on a recording of a camera behind the skin; drawn sessions of rising difficulty
-    Vision,
 }
 
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
@@ -47,13 +45,6 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
             with_bar("front", |progress| front::front(progress))?,
             with_bar("delay", |progress| delay::map(progress))?,
         ],
-        Subject::Vision => {
-            let table = workspace::root()?.join(RECORDINGS).join("fingervision/loads.csv");
-            vec![
-                with_bar("loads", |progress| loads::chart(&table, progress))?,
-                with_bar("failures", |progress| vision::failures(progress))?,
-            ]
-        }
         Subject::Emg => vec![emg::chart(&workspace::root()?.join(RECORDINGS).join("myobock"))?],
         Subject::Table => {
             let costs = table::costs::Costs::measured()?;

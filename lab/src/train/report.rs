@@ -8,7 +8,7 @@ use tenax_logic::array::FEATURES;
 use tenax_logic::array::structure::STRUCTURES;
 use tenax_sim::array::edges::{Chosen, FALSE_2800_MAX, FALSE_PER_HOUR_MAX};
 
-use crate::dataset::manifest::sha256;
+use crate::dataset::sha256;
 use crate::train::features::{Recipe, Sequence};
 use crate::train::fit::Choice;
 use crate::train::network::{H1, H2};
