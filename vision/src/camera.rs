@@ -21,7 +21,6 @@ pub struct Summary {
     /// Reason not to believe the rest.
     pub blind: Option<Blind>,
     pub markers: usize,
-    pub found: usize,
     /// None while too few markers are known.
     pub forces: Option<Forces>,
     pub object: Option<Sighting>,
@@ -149,7 +148,6 @@ impl Camera {
             frame: number,
             blind,
             markers: markers.len(),
-            found,
             forces,
             object,
             flow,

@@ -7,12 +7,10 @@
 pub mod camera;
 pub mod force;
 pub mod frame;
-pub mod loads;
 pub mod markers;
 pub mod mask;
 mod motion;
 pub mod object;
-mod plane_fit;
 pub mod quality;
 pub mod rectify;
 mod skin;

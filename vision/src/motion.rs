@@ -44,8 +44,13 @@ impl Flow {
 /// moves of a pixel or two; larger ones come out too small, with the right sign.
 pub fn flow(before: &Plane, now: &Plane, object: &Mask, middle: Point) -> Option<Flow> {
     let mut samples = Samples::EMPTY;
-    let every = object.count() / SAMPLES_MAX as u32 + 1;
-    object.for_every(every, |at| samples.take(before, now, at, middle));
+    let (every, mut number) = (object.count() as usize / SAMPLES_MAX + 1, 0);
+    object.for_each(|at| {
+        number += 1;
+        if number % every == 0 {
+            samples.take(before, now, at, middle);
+        }
+    });
     if samples.count < PIXELS_MIN {
         return None;
     }

@@ -5,11 +5,9 @@
 
 mod axis;
 mod colour;
-mod cut;
 mod ghost;
 mod hand;
 mod model;
-mod movement;
 mod scene;
 
 use crate::frame::{Frame, PIXELS, Plane, Point, WIDTH, plane};
@@ -18,8 +16,7 @@ use crate::rectify::Rectifier;
 
 use self::colour::{BINS, Bins};
 use self::model::{Histogram, ObjectModel};
-use self::movement::Running;
-use self::scene::Scene;
+use self::scene::{Running, Scene};
 
 /// Pixels that differ from the scene are believed to be the scene in one frame of so many while an object is seen.
 const DOUBT_FRAMES: u32 = 32;
@@ -49,6 +46,8 @@ const INSIDE_PX: usize = 10;
 const MOVES_PX: usize = 4;
 /// Reach around an object in which pixels that differ from the scene may be more of it, px.
 const CLOSE_PX: usize = 16;
+/// Largest distance from the border of an object that may go on beyond it with colours that are not known yet, px.
+const REACH_PX: usize = 24;
 
 /// Back projection from which a pixel's colour is the object's, 1 to 255.
 const COLOUR_MIN: u8 = 45;
@@ -83,7 +82,6 @@ pub struct Tracker {
     near: Mask,
     moving: Mask,
     apart: Mask,
-    slip: Mask,
     bytes: Box<Plane>,
     held: Box<Plane>,
     lens: Option<Rectifier>,
@@ -107,7 +105,6 @@ impl Default for Tracker {
             near: Mask::EMPTY,
             moving: Mask::EMPTY,
             apart: Mask::EMPTY,
-            slip: Mask::EMPTY,
             bytes: plane(),
             held: plane(),
             lens: None,
@@ -143,10 +140,6 @@ impl Tracker {
         &self.moving
     }
 
-    pub const fn slip(&self) -> &Mask {
-        &self.slip
-    }
-
     /// Takes a frame and its grey plane. With `learn`, the object's colours are learned from what moves: until the hand
     /// closes. What moves in `skin`, where the markers are, is no slip. None while there is no object.
     pub fn step(&mut self, frame: &Frame, grey: &Plane, skin: &Mask, learn: bool) -> Option<Sighting> {
@@ -167,7 +160,8 @@ impl Tracker {
             self.apart.clone_from(&differs);
         }
         let apart = differs.clone();
-        self.project(frame, &mut differs);
+        let is_its = |red, green, blue| self.model.value(self.bins.of(red, green, blue)) >= COLOUR_MIN;
+        differs.keep(frame, is_its);
         // Specks and lines of a pixel go, then noise (erosion 2), and what the markers cut out is closed (dilation 7, and back).
         differs.majority();
         differs.erode(2);
@@ -210,10 +204,10 @@ impl Tracker {
             self.near = Mask::EMPTY;
         }
         self.remember(frame, &apart);
-        self.slip.clone_from(&self.object);
-        self.slip.intersect(&self.moving);
-        self.slip.subtract(skin);
-        let slip_px = moments.map_or(0, |moments| spread_count(&self.slip, &moments));
+        let mut slip = self.object.clone();
+        slip.intersect(&self.moving);
+        slip.subtract(skin);
+        let slip_px = moments.map_or(0, |moments| spread_count(&slip, &moments));
         let ghost =
             learn && self.seen && slip_px < STILL_PX && ghost::is_one(&self.object, skin, frame, &self.scene);
         self.ghosts = if ghost { self.ghosts + 1 } else { 0 };
@@ -231,7 +225,7 @@ impl Tracker {
         unknown.unite(&self.object);
         let whole_percent = if self.is_part { WHOLE_PERCENT.1 } else { WHOLE_PERCENT.0 };
         self.is_part = 100 * self.object.count() < whole_percent * self.grasped;
-        let cut = self.is_part || cut::is_cut(&self.object, learn.then_some(&unknown));
+        let cut = self.is_part || is_cut(&self.object, learn.then_some(&unknown));
         Some(Sighting { moments, angle_rad: rims.angle, rims: rims.share, area, slip_px, cut })
     }
 
@@ -240,7 +234,7 @@ impl Tracker {
         self.near.unpack(&mut self.held);
         self.scene.follow(frame, &self.held, 0);
         self.model.forget();
-        (self.object, self.near, self.slip) = (Mask::EMPTY, Mask::EMPTY, Mask::EMPTY);
+        (self.object, self.near) = (Mask::EMPTY, Mask::EMPTY);
         (self.ghosts, self.seen, self.middle) = (0, false, None);
     }
 
@@ -277,10 +271,6 @@ impl Tracker {
         self.model.learn(&moving, &hidden);
     }
 
-    fn project(&self, frame: &Frame, mask: &mut Mask) {
-        mask.keep(frame, |red, green, blue| self.model.value(self.bins.of(red, green, blue)) >= COLOUR_MIN);
-    }
-
     /// Lets the scene follow what is not hidden by the object and a margin around it. What differs may be an object that is
     /// not recognised yet, or a part of one, and is followed in one frame of several only.
     fn remember(&mut self, frame: &Frame, differs: &Mask) {
@@ -302,6 +292,20 @@ impl Tracker {
     }
 }
 
+/// Whether an object goes on beyond the picture's border: it reaches the border, or what differs from the scene leads on to it.
+fn is_cut(object: &Mask, unknown: Option<&Mask>) -> bool {
+    let mut grown = object.clone();
+    if let Some(unknown) = unknown.filter(|_| object.comes_within(REACH_PX)) {
+        for _ in 0..REACH_PX {
+            grown.dilate(1);
+            grown.intersect(unknown);
+        }
+        grown.unite(object);
+    }
+    grown.comes_within(1)
+}
+
+/// Moving pixels at both ends of an object: four times those of the quieter end, at most all.
 fn spread_count(slip: &Mask, object: &Moments) -> u32 {
     let (sin, cos) = (libm::sinf(object.angle_rad()), libm::cosf(object.angle_rad()));
     let (mut here, mut there) = (0u32, 0u32);

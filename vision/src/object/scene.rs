@@ -1,4 +1,4 @@
-//! The scene behind the skin, remembered while an object hides it.
+//! The scene behind the skin, remembered while an object hides it; and what moves in it.
 //!
 //! For each pixel: its colour and how much that varies. It follows slowly where nothing is held in front of it and stands
 //! still where the object is, so that an object that is held still does not become background.
@@ -20,6 +20,11 @@ const LIGHT: (i32, i32) = (30, 235);
 /// A change of the light below this is none, 1/256.
 const LIGHT_MIN: i32 = 2;
 
+/// Grey levels from its mean beyond which a pixel moves: twice the noise of a cheap camera.
+const MOVES: i16 = 14;
+/// The running mean follows by this power of two: it forgets a move after some four frames.
+const RUNNING_RATE: u32 = 2;
+
 type Levels = Box<[i16; PIXELS]>;
 
 #[derive(Clone, Debug)]
@@ -31,7 +36,7 @@ pub struct Scene {
     frames: u32,
 }
 
-pub(super) fn levels() -> Levels {
+fn levels() -> Levels {
     match vec![0; PIXELS].into_boxed_slice().try_into() {
         Ok(plane) => plane,
         Err(_) => unreachable!("its length is that of a plane"),
@@ -135,5 +140,52 @@ fn follow(plane: &Plane, levels: &mut [i16; PIXELS], held: &[u8; PIXELS], rate: 
     for at in 0..PIXELS {
         let free = i16::from(held[at]) - 1;
         levels[at] += ((((i16::from(plane[at])) << FRACTION) - levels[at]) >> rate) & free;
+    }
+}
+
+/// A running mean of the grey level.
+#[derive(Clone, Debug)]
+pub struct Running {
+    mean: Levels,
+    started: bool,
+}
+
+impl Running {
+    pub fn new() -> Self {
+        Self { mean: levels(), started: false }
+    }
+
+    /// Marks with 1 what moves.
+    pub fn step(&mut self, grey: &Plane, into: &mut Plane) {
+        let (rate, limit) = (if self.started { RUNNING_RATE } else { 0 }, MOVES << FRACTION);
+        let mean = &mut *self.mean;
+        for at in 0..PIXELS {
+            let off = (i16::from(grey[at]) << FRACTION) - mean[at];
+            into[at] = u8::from(off.abs() > limit);
+            mean[at] += off >> rate;
+        }
+        if !self.started {
+            (self.started, _) = (true, into.fill(0));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame;
+
+    #[test]
+    fn what_changes_moves_until_the_mean_has_followed() {
+        let (mut running, mut grey, mut into) = (Running::new(), frame::plane(), frame::plane());
+        grey.fill(100);
+        let mut marked = [0; 2];
+        for number in 0..60 {
+            grey[5] = if number < 10 { 100 } else { 140 };
+            running.step(&grey, &mut into);
+            assert!(number > 0 || into.iter().all(|&moves| moves == 0), "nothing moves in the first frame");
+            marked = [marked[0] + usize::from(into[5]), marked[1] + usize::from(into[7])];
+        }
+        assert!((3..6).contains(&marked[0]) && marked[1] == 0, "{marked:?}");
     }
 }
