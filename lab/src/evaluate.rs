@@ -4,7 +4,6 @@
 pub mod emg;
 pub mod fit;
 pub mod report;
-pub mod roc;
 
 use tenax_sim::labelled::{Part, Recording};
 

@@ -71,7 +71,7 @@ pub struct Choice {
     pub candidate: Candidate,
     /// Passes done of the candidate's; 0 is the logistic regression itself.
     pub passes: usize,
-    /// Accuracy or balanced accuracy on sessions it had not seen.
+    /// Balanced accuracy on sessions it had not seen.
     pub unseen: f64,
     pub threshold: f64,
     /// Slope and intercept that turn its logit into log-odds.
@@ -234,13 +234,7 @@ fn choice(candidate: Candidate, passes: usize, judged: &[Judged], aim: Aim) -> C
         all.extend(fold);
     }
     let threshold = threshold(&all, aim);
-    let of = |fold: &Judged| {
-        let score = score(fold, threshold);
-        match aim {
-            Aim::Accuracy => score.accuracy,
-            Aim::Balanced | Aim::Pours => score.balanced,
-        }
-    };
-    let unseen = judged.iter().map(of).sum::<f64>() / judged.len().max(1) as f64;
+    let unseen =
+        judged.iter().map(|fold| score(fold, threshold).balanced).sum::<f64>() / judged.len().max(1) as f64;
     Choice { candidate, passes, unseen, threshold, calibration: platt(&all) }
 }

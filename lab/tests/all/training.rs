@@ -66,7 +66,7 @@ fn features_are_the_firmwares_bit_for_bit() {
 #[test]
 fn what_can_be_learned_is_learned_and_rounding_costs_little() {
     let sequences = sequences(&trembling(1), &Recipe::FIRMWARE);
-    let trained: Trained = fit(&sequences, &[QUICK], Aim::Accuracy, 1, &mut |_| {}).unwrap();
+    let trained: Trained = fit(&sequences, &[QUICK], Aim::Balanced, 1, &mut |_| {}).unwrap();
     // A window of ten remembers a slip for a while: half of it, twice in eighty steps, is the best that can be.
     assert!(trained.choice.unseen > 0.85, "{:?}", trained.choice);
     let table = Table::of(&sequences);
@@ -87,7 +87,7 @@ fn the_same_seed_gives_the_same_weights_and_another_gives_others() {
     let sequences = sequences(&trembling(1), &Recipe::FIRMWARE);
     let network = |seed| {
         let cold = Candidate { warm: false, ..QUICK };
-        fit(&sequences, &[cold], Aim::Accuracy, seed, &mut |_| {}).unwrap().network
+        fit(&sequences, &[cold], Aim::Balanced, seed, &mut |_| {}).unwrap().network
     };
     assert_eq!(network(3), network(3));
     assert_ne!(network(3), network(4));

@@ -69,18 +69,11 @@ const FAULTS: [Fault; 7] = [
     Fault::Broken,
 ];
 
-/// Which electrodes it has.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Where {
-    Closing,
-    Opening,
-    Both,
-}
-
 #[derive(Clone, Copy, Debug)]
 struct Drawn {
     fault: Fault,
-    place: Where,
+    /// Whether the closing and the opening electrode have it.
+    has: [bool; 2],
     /// mV above the live zero, or mV a second.
     mv: [f64; 2],
     ripple: f64,
@@ -94,7 +87,7 @@ struct Drawn {
 impl Drawn {
     fn of(rng: &mut ChaCha8Rng) -> Self {
         let fault = FAULTS[rng.random_range(0..FAULTS.len())];
-        let place = [Where::Closing, Where::Opening, Where::Opening, Where::Both][rng.random_range(0..4)];
+        let has = [[true, false], [false, true], [false, true], [true; 2]][rng.random_range(0..4)];
         let level =
             |rng: &mut ChaCha8Rng, low: f64, high: f64| low * (high / low).powf(rng.random_range(0.0..1.0));
         let mv = match fault {
@@ -106,11 +99,11 @@ impl Drawn {
             Fault::Broken => level(rng, 1.0, 3_301.0) - 301.0,
         };
         let lasts_s = level(rng, LASTS_S[0], LASTS_S[1]);
-        let other = if place == Where::Both { rng.random_range(0.05..1.0) } else { 1.0 };
+        let other = if has == [true; 2] { rng.random_range(0.05..1.0) } else { 1.0 };
         let mv = if rng.random_bool(0.5) { [mv, mv * other] } else { [mv * other, mv] };
         Self {
             fault,
-            place,
+            has,
             mv,
             ripple: rng.random_range(0.0..0.3),
             hz: rng.random_range(0.8..2.2),
@@ -120,17 +113,9 @@ impl Drawn {
         }
     }
 
-    fn has(&self, site: usize) -> bool {
-        match self.place {
-            Where::Closing => site == 0,
-            Where::Opening => site == 1,
-            Where::Both => true,
-        }
-    }
-
     /// Signal of a site's electrode `t_s` after the fault began, mV.
     fn read(&mut self, site: usize, muscle_mv: f64, t_s: f64, rng: &mut ChaCha8Rng) -> f64 {
-        if !self.has(site) {
+        if !self.has[site] {
             return muscle_mv;
         }
         if t_s >= self.loose.1 {
@@ -235,7 +220,7 @@ fn case(fitted: &'static Fitted, trial: &Trial, wearer: usize, rng: &mut ChaCha8
         }
         hand.take(pair);
         for (site, electrode) in electrodes.into_iter().enumerate().filter(|_| is_on) {
-            if drawn.has(site) && (pair[electrode].is_none() || hand.emg.is_raised(electrode)) {
+            if drawn.has[site] && (pair[electrode].is_none() || hand.emg.is_raised(electrode)) {
                 active[site] += 1;
                 lasting |= active[site] >= reported_within;
                 reported |= active[site] <= reported_within && hand.emg.quality(electrode) != Quality::Good;
@@ -244,7 +229,7 @@ fn case(fitted: &'static Fitted, trial: &Trial, wearer: usize, rng: &mut ChaCha8
     }
     (alone.opened_mm == 0.0).then_some(Outcome {
         fault: drawn.fault,
-        both: drawn.place == Where::Both,
+        both: drawn.has == [true; 2],
         wearer,
         opened_mm: hand.opened_mm,
         lasting,
