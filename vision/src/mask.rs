@@ -134,28 +134,11 @@ impl Mask {
         }
     }
 
+    /// Adds what does not reach the border from outside of it.
     pub fn fill_holes(&mut self) {
-        let mut free = self.clone();
-        free.invert();
-        let mut outside = Self::EMPTY;
-        for (y, (row, free)) in outside.rows.iter_mut().zip(&free.rows).enumerate() {
-            *row = if y == 0 || y == HEIGHT - 1 { *free } else { [0; WORDS] };
-            row[0] |= free[0] & 1;
-            row[WORDS - 1] |= free[WORDS - 1] & 1 << (BITS - 1);
-            *row = flood(row, free);
-        }
-        let mut grown = true;
-        while grown {
-            grown = false;
-            for y in 1..HEIGHT {
-                grown |= outside.grow(y - 1, y, &free);
-            }
-            for y in (1..HEIGHT).rev() {
-                grown |= outside.grow(y, y - 1, &free);
-            }
-        }
-        outside.invert();
-        *self = outside;
+        self.invert();
+        self.keep_at_border();
+        self.invert();
     }
 
     #[inline]

@@ -72,7 +72,7 @@ pub struct Sighting {
 }
 
 /// Follows an object.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Tracker {
     bins: Bins,
     scene: Scene,
@@ -82,8 +82,6 @@ pub struct Tracker {
     near: Mask,
     moving: Mask,
     apart: Mask,
-    bytes: Box<Plane>,
-    held: Box<Plane>,
     lens: Option<Rectifier>,
     frames: u32,
     seen: bool,
@@ -92,30 +90,6 @@ pub struct Tracker {
     grasped: u32,
     is_part: bool,
     ghosts: u32,
-}
-
-impl Default for Tracker {
-    fn default() -> Self {
-        Self {
-            bins: Bins::new(),
-            scene: Scene::new(),
-            movement: Running::new(),
-            model: ObjectModel::new(),
-            object: Mask::EMPTY,
-            near: Mask::EMPTY,
-            moving: Mask::EMPTY,
-            apart: Mask::EMPTY,
-            bytes: plane(),
-            held: plane(),
-            lens: None,
-            frames: 0,
-            seen: false,
-            middle: None,
-            grasped: 0,
-            is_part: false,
-            ghosts: 0,
-        }
-    }
 }
 
 impl Tracker {
@@ -144,15 +118,16 @@ impl Tracker {
     /// closes. What moves in `skin`, where the markers are, is no slip. None while there is no object.
     pub fn step(&mut self, frame: &Frame, grey: &Plane, skin: &Mask, learn: bool) -> Option<Sighting> {
         self.frames = self.frames.saturating_add(1);
-        self.movement.step(grey, &mut self.bytes);
-        self.moving.pack(&self.bytes);
+        let mut bytes = plane();
+        self.movement.step(grey, &mut bytes);
+        self.moving.pack(&bytes);
         if self.frames == 1 {
-            self.scene.follow(frame, &self.held, 0);
+            self.scene.follow(frame, &Mask::EMPTY, 0);
         }
         self.scene.follow_light(grey, &self.near);
-        self.scene.differs(frame, &mut self.bytes);
+        self.scene.differs(frame, &mut bytes);
         let mut differs = Mask::EMPTY;
-        differs.pack(&self.bytes);
+        differs.pack(&bytes);
         if learn {
             self.learn(frame, &differs);
         }
@@ -160,7 +135,7 @@ impl Tracker {
             self.apart.clone_from(&differs);
         }
         let apart = differs.clone();
-        let is_its = |red, green, blue| self.model.value(self.bins.of(red, green, blue)) >= COLOUR_MIN;
+        let is_its = |red, green, blue| self.model.value(self.bins.of([red, green, blue])) >= COLOUR_MIN;
         differs.keep(frame, is_its);
         // Specks and lines of a pixel go, then noise (erosion 2), and what the markers cut out is closed (dilation 7, and back).
         differs.majority();
@@ -231,8 +206,7 @@ impl Tracker {
 
     fn lay_ghost(&mut self, frame: &Frame) {
         self.near.invert();
-        self.near.unpack(&mut self.held);
-        self.scene.follow(frame, &self.held, 0);
+        self.scene.follow(frame, &self.near, 0);
         self.model.forget();
         (self.object, self.near) = (Mask::EMPTY, Mask::EMPTY);
         (self.ghosts, self.seen, self.middle) = (0, false, None);
@@ -254,16 +228,12 @@ impl Tracker {
         let (mut moving, mut hidden): (Histogram, Histogram) = ([0; BINS], [0; BINS]);
         new.for_each(|at| {
             let count = |count: &mut u16| *count = count.saturating_add(1);
-            count(&mut moving[self.bins.of(frame.red[at], frame.green[at], frame.blue[at])]);
-            let (red, green, blue) = self.scene.colour(at);
-            count(&mut hidden[self.bins.of(red, green, blue)]);
+            count(&mut moving[self.bins.of(frame.colour(at))]);
+            count(&mut hidden[self.bins.of(self.scene.colour(at))]);
         });
         // A moving background hides colours of its own: half of their usual share is taken away too.
         let mut scene: Histogram = [0; BINS];
-        (0..PIXELS).step_by(SAMPLE).for_each(|at| {
-            let (red, green, blue) = self.scene.colour(at);
-            scene[self.bins.of(red, green, blue)] += 1;
-        });
+        (0..PIXELS).step_by(SAMPLE).for_each(|at| scene[self.bins.of(self.scene.colour(at))] += 1);
         let count = new.count();
         for (hidden, scene) in hidden.iter_mut().zip(scene) {
             *hidden = (*hidden).max((u32::from(scene) * count / (2 * PIXELS / SAMPLE) as u32) as u16);
@@ -287,8 +257,7 @@ impl Tracker {
             hidden.unite(&doubtful);
         }
         hidden.dilate(3);
-        hidden.unpack(&mut self.held);
-        self.scene.follow(frame, &self.held, SCENE_RATE);
+        self.scene.follow(frame, &hidden, SCENE_RATE);
     }
 }
 

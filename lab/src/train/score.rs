@@ -3,8 +3,6 @@
 use serde::Serialize;
 use tenax_sim::array::real;
 
-use crate::equations;
-
 /// Logits and truth, step by step.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Judged {
@@ -108,19 +106,50 @@ pub fn threshold(judged: &Judged, aim: Aim) -> f64 {
     best.2
 }
 
-/// Slope and intercept that make a logit a log-odds (Platt 1999): logistic regression, each label smoothed by one step of the other kind.
+/// Slope and intercept that make a logit a log-odds (Platt 1999; Newton's method as in Lin, Lin and Weng 2007).
 pub fn platt(judged: &Judged) -> (f64, f64) {
+    let (positives, negatives) = (judged.of(true) as f64, judged.of(false) as f64);
+    let targets = [1.0 / (negatives + 2.0), (positives + 1.0) / (positives + 2.0)];
     let n = judged.logits.len().max(1) as f64;
     let mean = judged.logits.iter().sum::<f64>() / n;
     let spread = (judged.logits.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / n).sqrt().max(1e-12);
-    let [rest, slip] = [false, true].map(|slip| judged.of(slip) as f64);
-    let targets = [1.0 / (rest + 2.0), (slip + 1.0) / (slip + 2.0)];
-    let (slope, intercept) = equations::logistic(1, 2 * judged.logits.len(), 1e-9, |row, factors| {
-        let target = targets[usize::from(judged.slips[row / 2])];
-        factors[0] = judged.logits[row / 2] / spread;
-        if row % 2 == 0 { (true, target) } else { (false, 1.0 - target) }
-    });
-    (slope[0] / spread, intercept)
+    let steps = || judged.steps().map(|(x, slip)| (x / spread, targets[usize::from(slip)]));
+    let loss = |slope: f64, intercept: f64| -> f64 {
+        let of = |(x, target): (f64, f64)| {
+            let z = slope * x + intercept;
+            z.max(0.0) - z * target + (-z.abs()).exp().ln_1p()
+        };
+        steps().map(of).sum()
+    };
+    let (mut slope, mut intercept) = (1.0, ((positives + 1.0) / (negatives + 1.0)).ln());
+    let mut now = loss(slope, intercept);
+    for _ in 0..100 {
+        let (mut g, mut h) = ([0.0; 2], [1e-9, 0.0, 1e-9]);
+        for (x, target) in steps() {
+            let p = 1.0 / (1.0 + (-(slope * x + intercept)).exp());
+            let (error, weight) = (p - target, p * (1.0 - p));
+            g = [g[0] + error * x, g[1] + error];
+            h = [h[0] + weight * x * x, h[1] + weight * x, h[2] + weight];
+        }
+        let det = h[0] * h[2] - h[1] * h[1];
+        let step = [(h[2] * g[0] - h[1] * g[1]) / det, (h[0] * g[1] - h[1] * g[0]) / det];
+        let mut size = 1.0;
+        let (mut to, mut after) = ((slope, intercept), now);
+        while size > 1e-6 {
+            to = (slope - size * step[0], intercept - size * step[1]);
+            after = loss(to.0, to.1);
+            if after <= now {
+                break;
+            }
+            size /= 2.0;
+        }
+        let gained = now - after;
+        if !gained.is_finite() || gained < 1e-9 * now.abs() {
+            break;
+        }
+        ((slope, intercept), now) = (to, after);
+    }
+    (slope / spread, intercept)
 }
 
 #[cfg(test)]

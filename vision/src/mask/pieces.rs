@@ -3,13 +3,14 @@
 use super::{BITS, Mask, WORDS, Word, flood};
 use crate::frame::HEIGHT;
 
-/// Pieces that are told apart; of more, the first ones.
+/// Pieces that are compared; of more, the first ones.
 const PIECES_MAX: usize = 48;
 
 impl Mask {
     /// Keeps its connected pieces that are at least `percent` of the largest.
     pub fn keep_large(&mut self, percent: u32) {
-        let pieces: Vec<(Self, u32)> = self.pieces().map(|piece| (piece.clone(), piece.count())).collect();
+        let pieces: Vec<(Self, u32)> =
+            self.pieces().take(PIECES_MAX).map(|piece| (piece.clone(), piece.count())).collect();
         let largest = pieces.iter().map(|(_, area)| *area).max().unwrap_or(0);
         *self = Self::EMPTY;
         let large = pieces.iter().filter(|(_, area)| 100 * area >= percent * largest);
@@ -30,7 +31,7 @@ impl Mask {
     /// Keeps the piece that has the most pixels in `by`, and what is at most `apart_px` from it, or from what is kept.
     pub fn keep_together(&mut self, by: &Self, apart_px: usize) {
         let (mut kept, mut most) = (Self::EMPTY, 0);
-        for piece in self.pieces() {
+        for piece in self.pieces().take(PIECES_MAX) {
             let mut shared = piece.clone();
             shared.intersect(by);
             if shared.count() > most {
@@ -60,7 +61,7 @@ impl Mask {
 
     fn pieces(&self) -> impl Iterator<Item = Self> + use<> {
         let mut rest = self.clone();
-        std::iter::from_fn(move || rest.take_piece()).take(PIECES_MAX)
+        std::iter::from_fn(move || rest.take_piece())
     }
 
     fn take_piece(&mut self) -> Option<Self> {
@@ -93,7 +94,7 @@ impl Mask {
     }
 
     /// Grows from a row into the next as far as `within` goes. Returns whether it did.
-    pub(super) fn grow(&mut self, from: usize, to: usize, within: &Self) -> bool {
+    fn grow(&mut self, from: usize, to: usize, within: &Self) -> bool {
         let (mut seed, mut new) = (self.rows[to], 0);
         for (word, seed) in seed.iter_mut().enumerate() {
             let reached = self.rows[from][word] & within.rows[to][word];

@@ -36,8 +36,8 @@ pub struct Bins {
     table: Box<[u16]>,
 }
 
-impl Bins {
-    pub fn new() -> Self {
+impl Default for Bins {
+    fn default() -> Self {
         let mut table = vec![0; 1 << (3 * BITS)].into_boxed_slice();
         for (at, entry) in table.iter_mut().enumerate() {
             let level = |shift: u32| coarse((at >> shift << (8 - BITS)) as u8);
@@ -45,9 +45,11 @@ impl Bins {
         }
         Self { table }
     }
+}
 
+impl Bins {
     #[inline]
-    pub fn of(&self, red: u8, green: u8, blue: u8) -> usize {
+    pub fn of(&self, [red, green, blue]: [u8; 3]) -> usize {
         let level = |colour: u8| usize::from(colour >> (8 - BITS));
         usize::from(self.table[level(red) << (2 * BITS) | level(green) << BITS | level(blue)])
     }
@@ -71,5 +73,18 @@ mod tests {
             let bin = usize::from(bin(red, green, blue));
             assert_eq!((bin / SATURATIONS / HUES, bin / SATURATIONS % HUES, bin % SATURATIONS), split);
         }
+    }
+
+    #[test]
+    fn the_table_s_hue_is_nearly_that_of_the_colour() {
+        let bins = Bins::default();
+        let colours = || (0..1u32 << 24).step_by(97).map(|at| [(at >> 16) as u8, (at >> 8) as u8, at as u8]);
+        let is_near = |&[red, green, blue]: &[u8; 3]| {
+            let [exact, near] = [bin(red, green, blue).into(), bins.of([red, green, blue])]
+                .map(|bin: usize| bin / SATURATIONS % HUES);
+            let apart = near.abs_diff(exact);
+            apart.min(HUES - apart) <= 2
+        };
+        assert!(colours().filter(is_near).count() * 100 > colours().count() * 95);
     }
 }

@@ -21,11 +21,13 @@ pub struct ObjectModel {
     next: usize,
 }
 
-impl ObjectModel {
-    pub fn new() -> Self {
+impl Default for ObjectModel {
+    fn default() -> Self {
         Self { added: vec![[0; BINS]; FRAMES].into_boxed_slice(), sums: Box::new([0; BINS]), next: 0 }
     }
+}
 
+impl ObjectModel {
     pub fn learn(&mut self, moving: &Histogram, background: &Histogram) {
         let bins =
             self.added[self.next].iter_mut().zip(self.sums.iter_mut()).zip(moving.iter().zip(background));
@@ -57,7 +59,7 @@ mod tests {
 
     #[test]
     fn a_colour_of_the_background_is_not_the_objects() {
-        let (mut model, mut moving, mut background) = (ObjectModel::new(), [0; BINS], [0; BINS]);
+        let (mut model, mut moving, mut background) = (ObjectModel::default(), [0; BINS], [0; BINS]);
         (moving[3], moving[4], moving[5]) = (100, 100, 40);
         (background[3], background[4]) = (20, 70);
         model.learn(&moving, &background);
