@@ -11,9 +11,9 @@ pub(super) mod trial;
 pub mod two_channel;
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use anyhow::{Context, bail};
+use anyhow::bail;
 use rayon::prelude::*;
 use serde::Serialize;
 use tenax_logic::emg::constants::Fitted;
@@ -103,11 +103,11 @@ pub(super) struct Recordings {
 impl Recordings {
     /// Reads everything, or one person.
     pub fn read(folder: &Path) -> anyhow::Result<Self> {
-        let mut files = csv_files(folder)?;
-        files.sort();
         let mut all = Self::default();
         let mut short = Vec::new();
-        for path in files {
+        // Sorted by their paths.
+        for path in glob::glob(&format!("{}/**/*.csv", glob::Pattern::escape(&folder.to_string_lossy())))? {
+            let path = path?;
             let stem = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or_default();
             if let Some([person, day, posture]) = numbers(stem) {
                 let days = all.people.entry(person).or_default();
@@ -126,23 +126,6 @@ impl Recordings {
         }
         Ok(all)
     }
-}
-
-/// The tables in a folder and in its own folders.
-fn csv_files(folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
-    let mut files = Vec::new();
-    let mut folders = vec![folder.to_owned()];
-    while let Some(folder) = folders.pop() {
-        for entry in std::fs::read_dir(&folder).with_context(|| folder.display().to_string())? {
-            let path = entry?.path();
-            if path.is_dir() {
-                folders.push(path);
-            } else if path.extension().is_some_and(|extension| extension == "csv") {
-                files.push(path);
-            }
-        }
-    }
-    Ok(files)
 }
 
 /// The two-channel sessions of a folder and its own folders. Fails if there is no recording, or one cannot be read.

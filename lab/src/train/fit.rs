@@ -85,10 +85,9 @@ pub struct Trained {
     pub choice: Choice,
 }
 
-/// To learn from, and to judge by, as indices into the sequences.
-struct Fold {
-    learn: Vec<usize>,
-    judge: Vec<usize>,
+struct Fold<'a> {
+    learn: Vec<&'a Sequence>,
+    judge: Vec<&'a Sequence>,
 }
 
 /// Trains every candidate on some sessions, judges it on others, and trains the best one on all of them.
@@ -104,9 +103,9 @@ pub fn fit(
     progress: &mut dyn FnMut(f64),
 ) -> anyhow::Result<Trained> {
     let folds = folds(sequences)?;
-    let learn: Vec<usize> = (0..sequences.len()).filter(|&n| may_learn(&sequences[n])).collect();
+    let learn: Vec<&Sequence> = sequences.iter().filter(|own| may_learn(own)).collect();
     // With parts given, what is judged has learned all that there is to learn from: it need not learn it again.
-    let whole = folds.len() == 1 && folds[0].learn == learn;
+    let whole = folds.len() == 1 && folds[0].learn.len() == learn.len();
     let mut best: Option<(Choice, Option<Network>)> = None;
     let pieces = (candidates.len() * folds.len() + 1) as f64;
     for (place, &candidate) in candidates.iter().enumerate() {
@@ -114,8 +113,8 @@ pub fn fit(
         let mut judged = vec![Vec::<Judged>::new(); candidate.epochs + 1];
         let mut networks = vec![None; candidate.epochs + 1];
         for (n, fold) in folds.iter().enumerate() {
-            let unseen = Table::of(judged_by(sequences, &fold.judge, aim));
-            run(sequences, &fold.learn, candidate, candidate.epochs, (aim, seed), &mut |passes, network| {
+            let unseen = Table::of(judged_by(&fold.judge, aim));
+            run(&fold.learn, candidate, candidate.epochs, (aim, seed), &mut |passes, network| {
                 judged[passes].push(judge(network, &unseen));
                 networks[passes] = whole.then(|| network.clone());
                 let done = (place * folds.len() + n) as f64 + passes as f64 / candidate.epochs.max(1) as f64;
@@ -136,19 +135,17 @@ pub fn fit(
     }
     let Some((choice, mut network)) = best else { bail!("no candidate to choose from") };
     if network.is_none() {
-        run(sequences, &learn, choice.candidate, choice.passes, (aim, seed), &mut |_, now| {
-            network = Some(now.clone())
-        })?;
+        run(&learn, choice.candidate, choice.passes, (aim, seed), &mut |_, now| network = Some(now.clone()))?;
     }
     progress(1.0);
     let Some(network) = network else { bail!("nothing was learned") };
     Ok(Trained { network, choice })
 }
 
-fn judged_by<'a>(sequences: &'a [Sequence], judge: &[usize], aim: Aim) -> Vec<&'a Sequence> {
-    let all = || judge.iter().map(|&n| &sequences[n]);
-    let pours: Vec<&Sequence> = all().filter(|sequence| sequence.doing == Doing::Pour).collect();
-    if aim == Aim::Pours && !pours.is_empty() { pours } else { all().collect() }
+fn judged_by<'a>(judge: &[&'a Sequence], aim: Aim) -> Vec<&'a Sequence> {
+    let is_pour = |own: &&Sequence| own.doing == Doing::Pour;
+    let only_pours = aim == Aim::Pours && judge.iter().any(is_pour);
+    judge.iter().copied().filter(|own| !only_pours || is_pour(own)).collect()
 }
 
 /// Sequences that the final network learns: of the training part, or all that are for nothing in particular.
@@ -156,17 +153,16 @@ fn may_learn(sequence: &Sequence) -> bool {
     matches!(sequence.part, None | Some(Part::Train))
 }
 
-fn folds(sequences: &[Sequence]) -> anyhow::Result<Vec<Fold>> {
-    let of = |part: Part| -> Vec<usize> {
-        (0..sequences.len()).filter(|&n| sequences[n].part == Some(part)).collect()
-    };
-    let (learn, judge) = (of(Part::Train), of(Part::Validation));
+fn folds(sequences: &[Sequence]) -> anyhow::Result<Vec<Fold<'_>>> {
+    let of = |part: Part| sequences.iter().filter(|own| own.part == Some(part)).collect();
+    let (learn, judge): (Vec<_>, Vec<_>) = (of(Part::Train), of(Part::Validation));
     if !learn.is_empty() {
         ensure!(!judge.is_empty(), "the data set has a training part but no validation part to choose by");
         return Ok(vec![Fold { learn, judge }]);
     }
+    let all: Vec<&Sequence> = sequences.iter().filter(|own| may_learn(own)).collect();
     let mut sessions: Vec<&str> = Vec::new();
-    for sequence in sequences.iter().filter(|sequence| may_learn(sequence)) {
+    for sequence in &all {
         if !sessions.contains(&sequence.session.as_str()) {
             sessions.push(&sequence.session);
         }
@@ -178,29 +174,25 @@ fn folds(sequences: &[Sequence]) -> anyhow::Result<Vec<Fold>> {
         sessions.first().unwrap_or(&"none")
     );
     let count = sessions.len().min(FOLDS_MAX);
-    let fold_of = |sequence: &Sequence| {
-        sessions.iter().position(|session| **session == sequence.session).unwrap_or_default() % count
+    let is_in = |own: &Sequence, fold| {
+        sessions.iter().position(|session| *session == own.session).is_some_and(|n| n % count == fold)
     };
-    Ok((0..count)
-        .map(|fold| {
-            let (judge, learn) = (0..sequences.len())
-                .filter(|&n| may_learn(&sequences[n]))
-                .partition(|&n| fold_of(&sequences[n]) == fold);
-            Fold { learn, judge }
-        })
-        .collect())
+    let fold = |fold| {
+        let (judge, learn) = all.iter().partition(|own| is_in(own, fold));
+        Fold { learn, judge }
+    };
+    Ok((0..count).map(fold).collect())
 }
 
 /// Trains on some sequences, and shows the network after each pass; pass 0 is the logistic regression.
 fn run(
-    sequences: &[Sequence],
-    learn: &[usize],
+    learn: &[&Sequence],
     candidate: Candidate,
     passes: usize,
     (aim, seed): (Aim, u64),
     seen: &mut dyn FnMut(usize, &Network),
 ) -> anyhow::Result<()> {
-    let table = Table::of(learn.iter().map(|&n| &sequences[n]));
+    let table = Table::of(learn.iter().copied());
     let slips = table.slips.iter().filter(|&&slips| slips).count();
     ensure!(
         slips > 0 && slips < table.len(),

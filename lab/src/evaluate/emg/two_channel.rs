@@ -39,7 +39,7 @@ pub struct Session {
     /// Its letter; the first has none.
     pub name: String,
     pub movements: Vec<Movement>,
-    calibrations: Vec<Calibrated>,
+    pub calibrations: Vec<Calibrated>,
 }
 
 /// A choice of repetitions to calibrate from: rest, close, open.
@@ -217,10 +217,6 @@ impl Session {
         }
         session.calibrations = calibrations;
         session
-    }
-
-    pub fn calibrations(&self) -> &[Calibrated] {
-        &self.calibrations
     }
 
     fn others(&self, choice: [usize; 3]) -> impl Iterator<Item = &Movement> {
