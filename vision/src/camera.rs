@@ -12,7 +12,6 @@ use crate::quality::{Blind, Watch};
 use crate::rectify::Rectifier;
 use crate::skin::Skin;
 
-/// Markers without which there is no force.
 const MARKERS_MIN: usize = 4;
 
 #[derive(Clone, Copy, Debug, PartialEq)]

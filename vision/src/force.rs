@@ -1,6 +1,4 @@
-//! Force and torque from the markers' moves (FingerVision 2017, section IV A).
-//!
-//! The paper's estimate has no unit: shear is a marker's move, normal force is the size of that move.
+//! Force and torque from the markers' moves, px (FingerVision 2017, section IV A).
 
 use crate::frame::{HEIGHT, Point, WIDTH};
 use crate::markers::Marker;

@@ -1,7 +1,5 @@
-//! What a camera behind a clear skin tells (FingerVision 2017): where the markers on the skin are and so what force acts
-//! on it, where an object is, how it lies, and whether it slips.
-//!
-//! Pictures are of 320 x 240 pixels. Enter by [`Camera`], which takes a picture and gives a [`Summary`]; time is the caller's.
+//! A camera behind a clear skin (FingerVision 2017): force from markers on the skin; an object, its direction, and whether it slips.
+//! Pictures are of 320 x 240 pixels. [`Camera`] takes a picture and gives a [`Summary`]; time is the caller's.
 #![forbid(unsafe_code)]
 
 pub mod camera;

@@ -133,7 +133,6 @@ impl Markers {
         Self { neighbours: (0..markers.len()).map(nearest).collect(), markers }
     }
 
-    /// Looks for each in the next picture.
     pub fn follow(&mut self, grey: &Plane) {
         self.markers.iter_mut().for_each(|marker| marker.follow(grey));
         for at in 0..self.markers.len() {

@@ -163,7 +163,6 @@ impl Mask {
         }
     }
 
-    /// None of an empty set.
     pub fn moments(&self) -> Option<Moments> {
         let mut sums = [0u64; 6];
         self.for_each(|at| {

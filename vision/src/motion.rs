@@ -1,8 +1,5 @@
-//! How an object moves from one picture to the next: one rigid move for all of its pixels, by least squares on the brightness
-//! (Lucas and Kanade 1981), without looking for points.
-//!
-//! The light may change meanwhile, so a common gain is a fourth unknown. Pixels that the move does not explain (a spot of the
-//! background, a reflection) count less and less in each round.
+//! An object's rigid move from one picture to the next, by least squares on the brightness (Lucas and Kanade 1981), with a common gain of
+//! the light. Pixels that the move does not explain (a spot of the background, a reflection) count less in each round.
 
 use crate::frame::{HEIGHT, PIXELS, Plane, Point, WIDTH};
 use crate::mask::Mask;

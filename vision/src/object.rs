@@ -48,7 +48,6 @@ const MOVES_PX: usize = 4;
 const CLOSE_PX: usize = 16;
 /// Largest distance from the border of an object that may go on beyond it with colours that are not known yet, px.
 const REACH_PX: usize = 24;
-
 /// Back projection from which a pixel's colour is the object's, 1 to 255.
 const COLOUR_MIN: u8 = 45;
 /// The least part of the picture that is an object: what is smaller may be a person behind the skin, or a spot in another light.
@@ -71,7 +70,6 @@ pub struct Sighting {
     pub cut: bool,
 }
 
-/// Follows an object.
 #[derive(Clone, Debug, Default)]
 pub struct Tracker {
     bins: Bins,

@@ -1,5 +1,4 @@
-//! How the skin under an object moves from one picture to the next. The contact carries it along most in its middle, so the markers
-//! nearest to the object's middle count most.
+//! The skin's move under an object from one picture to the next. The markers nearest to the object's middle count most.
 
 use crate::frame::Point;
 use crate::markers::Marker;

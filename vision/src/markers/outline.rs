@@ -1,12 +1,8 @@
-//! A marker's outline, ray by ray, to a part of a pixel.
-//!
-//! A threshold moves the middle of a blob when the background behind one of its sides changes. So the edge is looked for
-//! along rays from the middle, each against its own background, and compared with where that ray met the edge when the
-//! marker was calibrated: a ray that sees no edge, or another one, is left out.
+//! A marker's outline, ray by ray, to a part of a pixel. Each ray is compared with its own background and with its edge at calibration, since
+//! a threshold moves the middle of a blob when the background behind one of its sides changes.
 
 use crate::frame::{HEIGHT, Plane, Point, WIDTH};
 
-/// Rays from the middle.
 pub const RAYS: usize = 16;
 const REACH: f32 = 2.5;
 /// Steps along a ray, px.
@@ -22,7 +18,6 @@ const CONTRAST_FULL: f32 = 40.0;
 const RAYS_MIN: usize = 8;
 /// The farthest that an edge may be from where the others put it, px.
 const STRAY: f32 = 0.6;
-
 /// A grey level of [`sample`].
 const ONE_LEVEL: i32 = 256 * 256;
 

@@ -1,6 +1,4 @@
-//! Local blob detection: what is dark in a window of 30 x 30 pixels, and in how many pieces.
-//!
-//! A row of the window is a word of bits, so that growing a blob by one pixel in all directions is a few shifts.
+//! Local blob detection: what is dark in a window of 30 x 30 pixels, a word of bits a row, and in how many pieces.
 
 use crate::frame::{HEIGHT, Plane, Point, WIDTH};
 use crate::mask::eight_bits;

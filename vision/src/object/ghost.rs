@@ -1,8 +1,5 @@
-//! Where an object was, the scene may have changed meanwhile: what is seen there is not what is remembered, and it is no object.
-//!
-//! An object has a rim in the picture, and what is remembered goes on behind it. Where a ghost ends the picture goes on, and what is
-//! remembered may end, old inside and new outside. Colours are compared, not grey levels: a pink object may be as bright as the wall
-//! behind it.
+//! A ghost: a place that an object has left and where the scene has changed meanwhile. Unlike an object it has no rim in the picture, where
+//! the remembered scene may have one. Colours are compared: an object may be as bright as the wall behind it.
 
 use super::scene::Scene;
 use crate::frame::{Frame, HEIGHT, WIDTH};

@@ -11,7 +11,6 @@ pub const FRAMES: usize = 200;
 const BACKGROUND_HALVES: u32 = 3;
 /// Gain of the rest, in halves (f_gain = 0.5).
 const GAIN_HALVES: u32 = 1;
-/// The most that a bin holds.
 const FULL: u32 = 255;
 
 #[derive(Clone, Debug)]

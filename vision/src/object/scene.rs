@@ -1,7 +1,5 @@
-//! The scene behind the skin, remembered while an object hides it; and what moves in it.
-//!
-//! For each pixel: its colour and how much that varies. It follows slowly where nothing is held in front of it and stands
-//! still where the object is, so that an object that is held still does not become background.
+//! The scene behind the skin, and what moves in it. The scene follows slowly and stands still where an object is, so that an object that is
+//! held still does not become background.
 
 use crate::frame::{Frame, PIXELS, Plane, WIDTH, plane};
 use crate::mask::Mask;
@@ -12,13 +10,10 @@ const FRACTION: u32 = 7;
 const APART_MIN: i16 = 12;
 /// One of so many pixels stands for all.
 const SAMPLE: usize = 61;
-/// Pixels that must tell so.
 const SAMPLES_MIN: u16 = 100;
-/// Levels that tell.
 const LIGHT: (i32, i32) = (30, 235);
 /// A change of the light below this is none, 1/256.
 const LIGHT_MIN: i32 = 2;
-
 /// Grey levels from its mean beyond which a pixel moves: twice the noise of a cheap camera.
 const MOVES: i16 = 14;
 /// The running mean follows by this power of two: it forgets a move after some four frames.
