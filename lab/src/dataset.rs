@@ -1,7 +1,5 @@
-//! Bamshad's collection method (section 3.2) as scenes, with the truth of the scenes as labels.
-//!
-//! A session gives three recordings, one a [story](story::Story). Whole sessions belong to training, validation or test, and one
-//! material to the test alone.
+//! Bamshad's collection method (section 3.2) as scenes, with the truth of the scenes as labels. Whole sessions belong to training, validation
+//! or test, and one material to the test alone.
 
 pub mod collect;
 pub mod operator;

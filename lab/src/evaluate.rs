@@ -1,5 +1,4 @@
-//! `tenax evaluate`: the force array's network on recordings that it never saw, step by step and slip by slip; and intent recognition
-//! on people.
+//! `tenax evaluate`: the force array's network on recordings that it never saw; and intent recognition on people.
 
 pub mod emg;
 pub mod fit;

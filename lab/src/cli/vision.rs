@@ -37,9 +37,9 @@ pub struct Args {
     /// A camera of Video4Linux, such as /dev/video0
     #[arg(long, value_name = "DEVICE", group = "source")]
     device: Option<PathBuf>,
-    /// Pictures a second if the source does not tell it, Hz [default: 30]
-    #[arg(long, value_name = "HZ", requires = "source")]
-    rate_hz: Option<f64>,
+    /// Pictures a second of a video, Hz
+    #[arg(long, value_name = "HZ", default_value_t = 30.0)]
+    rate_hz: f64,
     /// Folder for markers.csv and object.csv
     #[arg(long, value_name = "FOLDER", requires = "source")]
     out: Option<PathBuf>,
@@ -67,7 +67,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
             return Ok(ExitCode::SUCCESS);
         }
     };
-    if args.rate_hz.is_some_and(|rate| !(rate > 0.0 && rate.is_finite())) {
+    if !(args.rate_hz > 0.0 && args.rate_hz.is_finite()) {
         bail!("--rate-hz must be above 0");
     }
     let plan = Plan {

@@ -15,15 +15,13 @@ use tenax_sim::scorer::SlipSpan;
 
 const SCAN_S: f64 = 1.0 / SCAN_HZ as f64;
 
-/// One time step of a recording.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Step {
     /// Instant of the last element's reading, s.
     pub t_s: f64,
-    /// The ten samples, 14 bits each, as the slow frame reads them: one after the other, each the sum of four codes.
+    /// 14 bits each, as the slow frame reads them: one after the other, each the sum of four codes.
     pub samples: [u16; ARRAY_COUNT],
-    /// Whether the box slipped since the step before: it moved over the pads, by sliding or turning, faster than the
-    /// scene's floor.
+    /// Whether the box moved over the pads since the step before, faster than the scene's floor.
     pub slips: bool,
 }
 

@@ -118,7 +118,6 @@ pub fn entry(keys: &[(&str, f64)]) -> Table {
     keys.iter().map(|&(key, value)| (key.to_owned(), Value::from(value))).collect()
 }
 
-/// Sets `section.key`.
 fn put(scene: &mut Table, place: &str, value: impl Into<Value>) {
     let Some((section, key)) = place.split_once('.') else { return };
     let section = scene.entry(section).or_insert_with(|| Value::Table(Table::new()));

@@ -1,8 +1,5 @@
-//! Fits the constants of the wearer's model to recordings of people, and scores them on each person who was left out.
-//!
-//! A search: up to three constants change, each by a step that grows with success and shrinks with failure. A change stays if it costs
-//! less, and none of the people, the [promises](promises) or the faults drawn over these people are the worse for it: what helps one
-//! person at another's expense is chance. It begins at what ships; without a person, at round figures that were chosen on nobody.
+//! Fits the constants of the wearer's model to recordings of people by a random search, and scores them on each person who was left out. A
+//! change stays if it costs less and makes no person, no [promise](promises) and no drawn fault worse.
 
 mod promises;
 
@@ -94,19 +91,10 @@ const WORSE: f64 = 0.005;
 const FAULTS: u32 = 400;
 const OPENS: f64 = 20.0;
 
-/// Fitted without a person; costs of that person: of the round figures, of what ships (which has seen them), and of what was fitted.
-#[derive(Clone, Debug, Serialize)]
-pub struct Held {
-    pub person: u32,
-    pub plain_cost: f64,
-    pub shipped_cost: f64,
-    pub fitted_cost: f64,
-}
-
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
     pub cost: [f64; 2],
-    pub held: Vec<Held>,
+    /// Each person with constants that were fitted to the others, from round figures.
     pub held_one: emg::Report,
     /// The file, `logic/src/emg/fitted.rs`.
     pub file: String,
@@ -204,16 +192,12 @@ pub fn fit(folder: &Path, rounds: u32, seed: u64, part: &(dyn Fn(f64) + Sync)) -
     let without = |&own: &&Wearer| {
         let others: Vec<&Wearer> = all.iter().copied().filter(|other| other.number != own.number).collect();
         let fitted = search(&others, &promises, (rounds, seed), &PLAIN, step).1;
-        let [plain_cost, shipped_cost, fitted_cost] =
-            [&PLAIN, &FITTED, fitted].map(|fitted| own.cost(fitted));
-        let held = Held { person: own.number, plain_cost, shipped_cost, fitted_cost };
-        (held, person(fitted, own.number, own.days))
+        person(fitted, own.number, own.days)
     };
-    let (held, persons) = all.par_iter().map(without).unzip();
-    let held_one = emg::Report::of(persons);
+    let held_one = emg::Report::of(all.par_iter().map(without).collect());
     let (cost, fitted) = search(&all, &promises, (rounds, seed), &FITTED, step);
     let file = file(fitted, &all, (rounds, seed), cost, &held_one);
-    Ok(Report { cost, held, held_one, file })
+    Ok(Report { cost, held_one, file })
 }
 
 /// A row of the model card.

@@ -15,7 +15,6 @@ use crate::train::table::{Standard, Table};
 /// Most folds that sessions are left out in.
 const FOLDS_MAX: usize = 5;
 
-/// A way to learn.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Candidate {
     pub shyness: f32,
@@ -41,29 +40,23 @@ const fn few(shyness: f32) -> Candidate {
     Candidate { shyness, ridge: 4e-3, warm: true, epochs: 4, learning_rate: 3e-4, decay: 1e-1 }
 }
 
-/// A weighted sum of features on the common scale.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Linear {
-    pub weights: Vec<f32>,
-    pub bias: f32,
-}
+/// Weights and bias, on the common scale.
+pub type Linear = (Vec<f32>, f32);
 
-impl Linear {
-    /// Logistic regression; with `balanced`, rows of the rarer kind count so many times that both kinds count about alike.
-    fn logistic(table: &Table, standard: &Standard, ridge: f64, balanced: bool) -> Self {
-        let slips = table.slips.iter().filter(|&&slips| slips).count();
-        let (rare, often) = (slips.min(table.len() - slips), slips.max(table.len() - slips));
-        let times = if balanced { (often as f64 / rare.max(1) as f64).round().max(1.0) } else { 1.0 };
-        let rare_slips = slips < table.len() - slips;
-        let rows = standard.apply(table);
-        let ridge = ridge * (often as f64 + times * rare as f64);
-        let (weights, bias) = equations::logistic(FEATURES, table.len(), ridge, |n, factors| {
-            let row = &rows[n * FEATURES..][..FEATURES];
-            factors.iter_mut().zip(row).for_each(|(to, &x)| *to = x.into());
-            (table.slips[n], if table.slips[n] == rare_slips { times } else { 1.0 })
-        });
-        Self { weights: weights.into_iter().map(|weight| weight as f32).collect(), bias: bias as f32 }
-    }
+/// Logistic regression; with `balanced`, rows of the rarer kind count so many times that both kinds count about alike.
+fn logistic(table: &Table, standard: &Standard, ridge: f64, balanced: bool) -> Linear {
+    let slips = table.slips.iter().filter(|&&slips| slips).count();
+    let (rare, often) = (slips.min(table.count() - slips), slips.max(table.count() - slips));
+    let times = if balanced { (often as f64 / rare.max(1) as f64).round().max(1.0) } else { 1.0 };
+    let rare_slips = slips < table.count() - slips;
+    let rows = standard.apply(table);
+    let ridge = ridge * (often as f64 + times * rare as f64);
+    let (weights, bias) = equations::logistic(FEATURES, table.count(), ridge, |n, factors| {
+        let row = &rows[n * FEATURES..][..FEATURES];
+        factors.iter_mut().zip(row).for_each(|(to, &x)| *to = x.into());
+        (table.slips[n], if table.slips[n] == rare_slips { times } else { 1.0 })
+    });
+    (weights.into_iter().map(|weight| weight as f32).collect(), bias as f32)
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -78,7 +71,6 @@ pub struct Choice {
     pub calibration: (f64, f64),
 }
 
-/// A trained detector in single precision.
 #[derive(Clone, Debug)]
 pub struct Trained {
     pub network: Network,
@@ -90,11 +82,8 @@ struct Fold<'a> {
     judge: Vec<&'a Sequence>,
 }
 
-/// Trains every candidate on some sessions, judges it on others, and trains the best one on all of them.
-///
-/// If the file says what is for training and what for validation, that is kept to. If not, sessions are left out in turn.
-/// The test part is not used. `progress` gets the part of the work that is done.
-/// Fails if there is too little to choose by, or the optimiser fails.
+/// Trains every candidate on some sessions, judges it on others, as the file's parts say or left out in turn, and trains the best one on
+/// all of them. `progress` gets the part of the work that is done. Fails if there is too little to choose by, or the optimiser fails.
 pub fn fit(
     sequences: &[Sequence],
     candidates: &[Candidate],
@@ -195,13 +184,13 @@ fn run(
     let table = Table::of(learn.iter().copied());
     let slips = table.slips.iter().filter(|&&slips| slips).count();
     ensure!(
-        slips > 0 && slips < table.len(),
+        slips > 0 && slips < table.count(),
         "of {} steps to learn from {slips} slip: both kinds are needed",
-        table.len()
+        table.count()
     );
     let standard = Standard::of(&table, candidate.shyness);
     let balanced = aim == Aim::Balanced;
-    let begin = candidate.warm.then(|| Linear::logistic(&table, &standard, candidate.ridge, balanced));
+    let begin = candidate.warm.then(|| logistic(&table, &standard, candidate.ridge, balanced));
     let mut learner = Learner::new(&standard, candidate, seed, begin.as_ref())?;
     if begin.is_some() {
         seen(0, &learner.network()?);

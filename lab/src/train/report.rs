@@ -14,7 +14,6 @@ use crate::train::fit::Choice;
 use crate::train::network::{H1, H2};
 use crate::train::score::Score;
 
-/// The data that was learned from.
 #[derive(Clone, Debug, Serialize)]
 pub struct Data {
     pub file: String,

@@ -1,5 +1,6 @@
 //! A video or a camera, decoded by the `ffmpeg` program and followed from its first picture to its last.
 
+use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
@@ -43,17 +44,6 @@ impl Source {
         let planes = ffmpeg.stdout.take().context("ffmpeg has no output")?;
         Ok(Decoder { ffmpeg, planes })
     }
-
-    /// Pictures a second that a video says it has.
-    fn rate_hz(&self) -> Option<f64> {
-        let Self::Video(path) = self else { return None };
-        let probe = "-v error -select_streams v:0 -show_entries stream=r_frame_rate -of csv=p=0".split(' ');
-        let told = Command::new("ffprobe").args(probe).arg(path).output().ok()?;
-        let told = String::from_utf8(told.stdout).ok()?;
-        let (over, under) = told.trim().trim_end_matches(',').split_once('/')?;
-        let rate_hz = over.parse::<f64>().ok()? / under.parse::<f64>().ok()?;
-        Some(rate_hz).filter(|rate_hz| rate_hz.is_finite() && *rate_hz > 0.0)
-    }
 }
 
 struct Decoder {
@@ -88,8 +78,8 @@ impl Drop for Decoder {
 #[derive(Clone, Debug)]
 pub struct Plan {
     pub source: Source,
-    /// Pictures a second, unless the video says it.
-    pub rate_hz: Option<f64>,
+    /// Pictures a second of a video.
+    pub rate_hz: f64,
     /// Folder of markers.csv and object.csv.
     pub folder: Option<PathBuf>,
     /// Whether a video is followed at its rate instead of as fast as it is decoded.
@@ -109,28 +99,16 @@ pub struct Report {
     pub object_share: f64,
     /// Share of the pictures in which it slips.
     pub slip_share: f64,
-    pub blind: Blindness,
+    /// Pictures that were not to be believed, and times that none came for 200 ms.
+    pub blind: BTreeMap<&'static str, usize>,
 }
 
-/// Pictures that were not to be believed.
-#[derive(Clone, Copy, Debug, Default, Serialize)]
-pub struct Blindness {
-    /// None came for 200 ms: times.
-    pub lost: usize,
-    pub late: usize,
-    pub frozen: usize,
-    pub covered: usize,
-}
-
-impl Blindness {
-    fn count(&mut self, blind: Option<Blind>) {
-        match blind {
-            Some(Blind::Lost(_)) => self.lost += 1,
-            Some(Blind::Late(_)) => self.late += 1,
-            Some(Blind::Frozen(_)) => self.frozen += 1,
-            Some(Blind::Covered) => self.covered += 1,
-            None => (),
-        }
+const fn name(blind: Blind) -> &'static str {
+    match blind {
+        Blind::Lost(_) => "lost",
+        Blind::Late(_) => "late",
+        Blind::Frozen(_) => "frozen",
+        Blind::Covered => "covered",
     }
 }
 
@@ -142,7 +120,6 @@ pub fn follow(
     mut told: impl FnMut(&Summary, u16) -> Result<()>,
 ) -> Result<Report> {
     let mut tables = plan.folder.as_deref().map(Tables::create).transpose()?;
-    let rate_hz = plan.rate_hz.or_else(|| plan.source.rate_hz()).unwrap_or(30.0);
     let mut decoder = plan.source.open()?;
     let mut planes = vec![0; FRAME_BYTES];
     let mut camera = Camera::default();
@@ -153,7 +130,7 @@ pub fn follow(
     let mut begun = None;
     while decoder.next(&mut planes)? {
         let begun = *begun.get_or_insert_with(Instant::now);
-        let due = Duration::from_secs_f64(report.frames as f64 / rate_hz);
+        let due = Duration::from_secs_f64(report.frames as f64 / plan.rate_hz);
         // A camera's picture comes when it is taken, as far as anybody knows.
         let (taken, now) = match &plan.source {
             Source::Device(_) => (begun.elapsed(), begun.elapsed()),
@@ -164,9 +141,7 @@ pub fn follow(
             Source::Video(_) => (due, due),
         };
         let [taken_ms, now_ms] = [taken, now].map(|at| at.as_millis() as u32);
-        if report.frames > 0 {
-            report.blind.count(camera.silence(now_ms));
-        }
+        let silence = camera.silence(now_ms).filter(|_| report.frames > 0);
         let frame = Frame::from_gbrp(&planes).context("a picture's size")?;
         let start = Instant::now();
         let summary = camera.picture(&frame, !holds.load(Ordering::Relaxed), taken_ms, now_ms);
@@ -185,7 +160,9 @@ pub fn follow(
         }
         objects += usize::from(summary.object.is_some());
         slips += usize::from(summary.slips());
-        report.blind.count(summary.blind);
+        for blind in silence.into_iter().chain(summary.blind) {
+            *report.blind.entry(name(blind)).or_default() += 1;
+        }
         if let Some(tables) = &mut tables {
             tables.write(&camera, &summary)?;
         }
@@ -201,7 +178,6 @@ pub fn follow(
     Ok(report)
 }
 
-/// markers.csv and object.csv.
 struct Tables {
     markers: csv::Writer<File>,
     object: csv::Writer<File>,

@@ -35,7 +35,6 @@ impl Point {
         f64::midpoint(self.score.close_right, self.score.open_right)
     }
 
-    /// Whether the hand ships so.
     pub fn ships(&self) -> bool {
         self.control == "hand" && self.asks == 1.0
     }

@@ -1,14 +1,11 @@
 //! Faults of the electrodes drawn over recorded people who hold something and rest: by how much each opens the hand, and whether it is
-//! reported.
-//!
-//! A case plays a recording up to a moment of rest, goes on with that rest over and over, and from then on one electrode or both give
-//! what a fault gives. The hand is calibrated as in the trial that was drawn, or not at all. A rest that moves the hand by itself is
-//! drawn again: that is a false motion, which is counted elsewhere.
+//! reported. A rest that moves the hand by itself is drawn again: that is a false motion, which is counted elsewhere.
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::ops::Range;
 
+use clap::ValueEnum;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
@@ -40,7 +37,7 @@ const FRONT_END_S: f64 = 0.027;
 const RANGE_MV: [f64; 2] = [-200.0, 2_950.0];
 
 /// Signal of an electrode instead of its muscle's.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, ValueEnum)]
 #[serde(rename_all = "kebab-case")]
 pub enum Fault {
     /// Off the skin: mains, rectified and smoothed.
@@ -59,16 +56,6 @@ pub enum Fault {
     Broken,
 }
 
-const FAULTS: [Fault; 7] = [
-    Fault::Lifted,
-    Fault::Loose,
-    Fault::Creeping,
-    Fault::Humming,
-    Fault::Swinging,
-    Fault::Saturated,
-    Fault::Broken,
-];
-
 #[derive(Clone, Copy, Debug)]
 struct Drawn {
     fault: Fault,
@@ -86,7 +73,7 @@ struct Drawn {
 
 impl Drawn {
     fn of(rng: &mut ChaCha8Rng) -> Self {
-        let fault = FAULTS[rng.random_range(0..FAULTS.len())];
+        let fault = Fault::value_variants()[rng.random_range(0..Fault::value_variants().len())];
         let has = [[true, false], [false, true], [false, true], [true; 2]][rng.random_range(0..4)];
         let level =
             |rng: &mut ChaCha8Rng, low: f64, high: f64| low * (high / low).powf(rng.random_range(0.0..1.0));
@@ -300,7 +287,7 @@ pub(in crate::evaluate) fn draw(fitted: &'static Fitted, trials: &[&Trial], case
         all: Row::of(outcomes.iter()),
         one: Row::of(one()),
         both: Row::of(outcomes.iter().filter(|own| own.both)),
-        faults: FAULTS.into_iter().map(|fault| (fault, of_fault(fault))).collect(),
+        faults: Fault::value_variants().iter().map(|&fault| (fault, of_fault(fault))).collect(),
         wearers: WEARERS.into_iter().enumerate().map(|(n, name)| (name, of_wearer(n))).collect(),
     }
 }
