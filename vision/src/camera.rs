@@ -163,9 +163,8 @@ impl Camera {
 /// Pictures from which the angle of a held object is made.
 const HEADING_PICTURES: f32 = 40.0;
 const MOMENTS_WEIGHT: f32 = 0.01;
-/// Rows of the object that are looked at for its move.
+/// One of so many rows is looked at for a move.
 const OBJECT_ROWS: usize = 2;
-/// Rows of the background that are looked at: one of so many is enough for one move.
 const BACKGROUND_ROWS: usize = 4;
 const RIM_PX: f32 = 3.0;
 

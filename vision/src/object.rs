@@ -1,7 +1,5 @@
-//! The object behind the skin, and whether it slips (FingerVision 2017, section III).
-//!
-//! An object has the colours of what moved, less those that it now hides, and differs from the remembered scene. Either alone is not
-//! enough: a person behind the skin differs from the scene, and a wall has the colours of a card.
+//! The object behind the skin, and whether it slips (FingerVision 2017, section III): it has the colours of what moved, less those that it
+//! hides, and differs from the remembered scene.
 
 mod axis;
 mod colour;

@@ -39,8 +39,6 @@ impl<'a> Wearer<'a> {
         Self { number, days, trials: Trials::of(days).all.into_iter().map(heard).collect() }
     }
 
-    /// Cost of this wearer's scores: windows that are not right, and those the wrong way, unanswered and false motions, which annoy
-    /// more than their share, and what is late.
     fn cost(&self, fitted: &'static Fitted) -> f64 {
         let of = |kind: Kind, false_motion: f64| {
             let own = self.trials.iter().filter(|(trial, _)| trial.kind == kind);

@@ -103,7 +103,6 @@ pub fn saved(
     }
 }
 
-/// The threshold as a confidence, per mille.
 pub fn permille(choice: &Choice) -> u16 {
     let (slope, intercept) = choice.calibration;
     let odds = slope * choice.threshold + intercept;

@@ -24,9 +24,7 @@ pub struct Quantised {
 }
 
 impl Quantised {
-    /// Rounds a network; activations are measured on `table`.
-    ///
-    /// The units of the first layer are scaled so that a unit's weights before and after it are about as large (Nagel et al. 2019,
+    /// Rounds a network; activations are measured on `table`. The units of the first layer are scaled so that a unit's weights before and after it are about as large (Nagel et al. 2019,
     /// cross-layer equalisation): a ReLU does not mind, and no unit loses more to rounding than another.
     pub fn of(network: &Network, table: &Table) -> Self {
         let network = equalised(network);

@@ -52,7 +52,7 @@ pub struct Score {
     pub auc: f64,
 }
 
-/// Scores logits: slip is above the threshold.
+/// Slip is above the threshold.
 pub fn score(judged: &Judged, threshold: f64) -> Score {
     let (positives, negatives) = (judged.of(true), judged.of(false));
     let (mut missed, mut false_alarms) = (0, 0);

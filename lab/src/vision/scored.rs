@@ -55,7 +55,6 @@ fn root<S: Serializer>(squares: &Mean, to: S) -> Result<S::Ok, S::Error> {
 
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct Report {
-    /// The first session's.
     pub seed: u64,
     pub frames: usize,
     /// Pictures a second that one core follows, markers and object together.

@@ -224,7 +224,6 @@ fn case(fitted: &'static Fitted, trial: &Trial, wearer: usize, rng: &mut ChaCha8
     })
 }
 
-/// Cases of a kind, and what came of them.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Row {
     pub cases: usize,

@@ -1,6 +1,5 @@
-//! Short recordings of two muscles, one movement each: `emg_two_channel_[LETTER_]MOVEMENT[N].csv`, raw, through the front end of their
-//! recipe, which also says what a movement means. A session is calibrated from each choice of one rest, one held movement that closes
-//! and one that opens, and scored on the others.
+//! Short recordings of two muscles, one movement each, `emg_two_channel_[LETTER_]MOVEMENT[N].csv`. A session is calibrated from each choice
+//! of one rest, one held movement that closes and one that opens, and scored on the others.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -19,15 +18,13 @@ use tenax_sim::replay::meaning::Motion;
 use tenax_sim::replay::muscles::{Muscles, calibrate};
 
 pub(super) const PREFIX: &str = "emg_two_channel_";
-/// The window in which a decision is scored, s.
+/// Window of a score, s.
 const WINDOW_S: f64 = 0.25;
-/// The delay of the front end's 4 Hz low-pass, s: what a window of the recording does to the envelope. The recordings begin
-/// within a contraction, of which the front end has heard nothing before.
+/// The delay of the front end's 4 Hz low-pass, s; the recordings begin within a contraction.
 const FRONT_END_S: f64 = 0.056;
 
 #[derive(Clone, Debug)]
 pub struct Movement {
-    /// Its name without the session's.
     pub name: String,
     wants: Wish,
     never: Vec<Wish>,
@@ -124,7 +121,6 @@ impl Movement {
 #[derive(Clone, Debug)]
 pub struct Played<'a> {
     movement: &'a Movement,
-    /// By the recording's own time, s.
     pub verdicts: Vec<(f64, Verdict)>,
     /// When a channel's quality became this.
     pub doubts: Vec<(f64, usize, Quality)>,
