@@ -72,17 +72,16 @@ pub fn saved(
         covariance_knee: recipe.covariance_knee,
         spectrum_knee: recipe.spectrum_knee,
         structure_knee: recipe.structure_knee,
-        first: (own.first, own.first_bias, own.first_shift),
-        second: (own.second, own.second_bias, own.second_shift),
+        first: own.first,
+        second: own.second,
         // The calibration's intercept is part of the bias: a logit of 0 is even odds.
-        last: (own.last, (f64::from(own.last_bias) + intercept * per_nat).round() as i32),
+        last: (own.last.0, (f64::from(own.last.1) + intercept * per_nat).round() as i32),
         logit_per_nat: per_nat.round() as i32,
         edges: Edges { on_permille: permille, off_permille: permille },
         noise_samples,
     }
 }
 
-/// The threshold as a confidence, per mille.
 pub fn permille(choice: &Choice) -> u16 {
     let (slope, intercept) = choice.calibration;
     let odds = slope * choice.threshold + intercept;
