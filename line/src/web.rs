@@ -1,7 +1,5 @@
-//! The page of `tenax monitor`, in a browser of this machine.
-//!
-//! Changes come as server-sent events, at most twenty a second. Only this machine is served, and only pages of this address may ask: a page
-//! of another site in the same browser may not.
+//! The page of `tenax monitor`, in a browser of this machine. Changes come as server-sent events, at most twenty a second. Only this
+//! machine is served, and only pages of this address may ask: a page of another site in the same browser may not.
 
 pub mod source;
 pub mod view;

@@ -1,5 +1,4 @@
 //! The page's view of a board that goes away and comes back, of garbage and of another version.
-//!
 //! A program of its own: what another test starts would inherit the pseudo-terminals and pass for their holder.
 #![cfg(unix)]
 

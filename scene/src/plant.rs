@@ -35,7 +35,6 @@ pub enum Calibrated {
 }
 
 /// A world (a scene) or a recording, seen from the board, one scan at a time.
-///
 /// One that is put around another names it as `within`, and says itself only what is different.
 pub trait Plant: Send {
     /// The plant that this one is put around; every method below that is not overridden asks it.

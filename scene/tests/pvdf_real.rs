@@ -1,9 +1,8 @@
 //! The films of a scene against real films.
 //!
-//! The figures are measured from the project's evaluation recordings (`pvdf_quiet`, `pvdf_contact`, `pvdf_slip_onset`:
-//! P(VDF-TrFE) in a soft fingertip, 2 kHz, two films; GitHub
-//! cosmiclab-unige/Piezoelectric-Tactile-Contact-and-Slip-Detection-Dataset, by way of the README beside them). None of
-//! the samples is here. A model within a factor of two of a figure passes.
+//! The figures are measured from the project's evaluation recordings (`pvdf_quiet`, `pvdf_contact`, `pvdf_slip_onset`: P(VDF-TrFE) in a
+//! soft fingertip, 2 kHz, two films; GitHub cosmiclab-unige/Piezoelectric-Tactile-Contact-and-Slip-Detection-Dataset, by way of the README
+//! beside them). None of the samples is here. A model within a factor of two of a figure passes.
 
 use std::f64::consts::TAU;
 use std::ops::Range;

@@ -1,8 +1,6 @@
-//! The friction model against a real finger on a friction rig: the rise, the peak and the fall of Ft/Fn.
-//!
-//! The figures are measured from the project's evaluation recording `friction_rig_10khz.csv` (GitHub
-//! data-driven-playback-of-natural-tactile-texture, 10 kHz, 0.5 N, plate driven off to 40 mm/s) by the
-//! definitions below. None of its samples is here; where the recording is at hand, it is measured once more.
+//! The friction model against a real finger on a friction rig: the rise, the peak and the fall of Ft/Fn. The figures are measured from the
+//! project's evaluation recording `friction_rig_10khz.csv` (GitHub data-driven-playback-of-natural-tactile-texture, 10 kHz, 0.5 N, plate
+//! driven off to 40 mm/s) by the definitions below. None of its samples is here; where the recording is at hand, it is measured once more.
 
 use std::path::Path;
 

@@ -1,5 +1,4 @@
 //! The force array's network on a data set that nothing was learned or chosen from.
-//!
 //! The paper's task is pours alone. The goals (balanced 0.95, nine slips in ten within 50 ms at 20 false alarms an hour) are not reached
 //! on honest draws: docs/array.md says where it fails and why.
 

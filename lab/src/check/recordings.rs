@@ -1,8 +1,6 @@
-//! Real input: what each kind of recording must and must not set off.
-//!
-//! The recordings are not part of the project. Every recording in the folder whose name has a rule here is played, so more
-//! of the same kinds can simply be put there. The first of each kind is played on the board and on the host, which have to say
-//! the same; the others on the host alone: emulated, all of them take 4 minutes of a core.
+//! Real input: what each kind of recording must and must not set off. The recordings are not part of the project. Every recording in the
+//! folder whose name has a rule here is played, so more of the same kinds can simply be put there. The first of each kind is played on the
+//! board and on the host, which have to say the same; the others on the host alone: emulated, all of them take 4 minutes of a core.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -13,8 +13,7 @@ use tenax_sim::report::fate;
 use tenax_sim::scorer::{Card, Doing, Outcome, Stretch, Verdict, outcome};
 
 const SCENE: &str = "pick-up-trial";
-/// When its arm begins to lift, at the earliest, s. Chance adds up to six of the camera's images, so that no image has a
-/// favourite instant.
+/// When its arm begins to lift, at the earliest, s. Chance adds up to six of the camera's images, so that no image has a favourite instant.
 const LIFT_S: f64 = 1.2;
 const LATER_S: f64 = 0.2;
 

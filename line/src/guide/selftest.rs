@@ -1,5 +1,4 @@
 //! Tests every sensor's wire: at rest each has its level, and what is touched is what moves.
-//!
 //! A prompt begins with the verb and the channel's name: it can be piped to a served scene's bench.
 
 use std::time::{Duration, Instant};

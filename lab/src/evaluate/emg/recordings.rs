@@ -1,6 +1,5 @@
-//! Recorded envelopes of people, as the board reads them:
-//! `personP_dayD_postureQ.csv` at 100 Hz: `t_s`, four electrodes (`ecu`, `edc`, `fcr`, `fcu`, 32767 is 2.8 V), `label`: 1 rest, 3 close,
-//! 4 open, others nothing.
+//! Recorded envelopes of people, as the board reads them: `personP_dayD_postureQ.csv` at 100 Hz: `t_s`, four electrodes (`ecu`, `edc`,
+//! `fcr`, `fcu`, 32767 is 2.8 V), `label`: 1 rest, 3 close, 4 open, others nothing.
 
 use std::collections::BTreeMap;
 use std::ops::Range;

@@ -61,8 +61,7 @@ impl Client {
         self.inbox.counts()
     }
 
-    /// The next message. None if none comes within 0.1 s.
-    /// Fails if the line has ended: with `UnexpectedEof` if it was closed in order.
+    /// The next message. None if none comes within 0.1 s. Fails if the line has ended: with `UnexpectedEof` if it was closed in order.
     pub fn next_message(&mut self) -> io::Result<Option<Heard>> {
         Ok(self.next_frame()?.and_then(Result::ok))
     }
