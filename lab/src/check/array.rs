@@ -34,5 +34,6 @@ pub fn bars() -> anyhow::Result<Vec<Bar>> {
         pour.missed_2800
     );
     let values = [pour.balanced, pour.false_2800, pour.false_per_hour];
-    Ok(GOALS.into_iter().zip(values).map(|(goal, value)| Bar::short_of(goal, value, &by)).collect())
+    let bars = GOALS.into_iter().zip(values).zip([by.as_str(), "", ""]);
+    Ok(bars.map(|((goal, value), by)| Bar::short_of(goal, value, by)).collect())
 }

@@ -95,8 +95,8 @@ fn bar(rule: &Rule, file: &Path, name: &str, emulated: Option<&Board>) -> anyhow
         return Ok(Bar::new(promise, format!("{figure}; on the host"), "", holds));
     };
     let same = judged(board)? == (figure.clone(), holds);
-    let word = if same { "the same" } else { "NOT the same" };
-    Ok(Bar::new(promise, format!("{figure}; {word} on the {} board", board.name()), "", holds && same))
+    let word = if same { "too" } else { "NOT the same" };
+    Ok(Bar::new(promise, format!("{figure}; {} {word}", board.name()), "", holds && same))
 }
 
 fn rig(report: &Report) -> (String, bool) {
