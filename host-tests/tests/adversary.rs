@@ -336,7 +336,6 @@ struct Seen {
     most_blind: u32,
     /// Activity at each place of the slow frame.
     active: [bool; 25],
-    /// The last changes of the pins.
     history: Vec<(u32, [Pin; 2])>,
     /// Last frame in which the extensor's muscle was above rest.
     asked_at: Option<u32>,

@@ -9,7 +9,6 @@ pub mod wearer;
 
 use std::fmt::{self, Display};
 
-/// Whether a promise holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
     Pass,

@@ -74,7 +74,6 @@ impl Web {
         lock(&self.view)
     }
 
-    /// Whether a page of this address sent the request.
     fn is_ours(&self, request: &Request) -> bool {
         let header = |name: &'static str| {
             request.headers().iter().find(|header| header.field.equiv(name)).map(|own| own.value.as_str())

@@ -108,7 +108,6 @@ pub trait Plant: Send {
         self.within().is_some_and(Plant::resets)
     }
 
-    /// True while the board's button is held down.
     fn button(&self) -> bool {
         self.within().is_some_and(Plant::button)
     }

@@ -13,7 +13,6 @@ use tenax_hal_shim::channel::{FRAME_HZ, PVDF_COUNT, SCANS_PER_FRAME};
 use tenax_hal_shim::front_end::PVDF_REST_MV;
 use tenax_scene::SceneFile;
 
-/// From film to pin.
 const GAIN: f64 = 20.0;
 /// Films 1 to 12 at 2 kHz, mV at the film.
 type Films = [Vec<f64>; PVDF_COUNT];

@@ -17,7 +17,6 @@ struct Onset {
     drop: f64,
 }
 
-/// The recording's, by [`onset`].
 const RECORDED: Onset =
     Onset { peak: 0.690, rise_s: 0.0420, passes_s: [0.0236, 0.0169, 0.0122], drop: 0.2276 };
 
@@ -41,7 +40,6 @@ fn within(value: f64, figure: f64, part: f64) -> bool {
     (value / figure - 1.0).abs() <= part
 }
 
-/// The model beside an onset that was recorded.
 fn assert_reproduced(recorded: &Onset) {
     let mut rows = Vec::new();
     run(&scene("rig"), Reflex::None, |world, _| {

@@ -14,7 +14,6 @@ use super::{Bar, Group, Verdict};
 /// On the rig nothing slides before this, s.
 const RIG_STILL_UNTIL_S: f64 = 1.5;
 
-/// A kind of recording, known by its name.
 struct Rule {
     pattern: &'static str,
     promise: &'static str,

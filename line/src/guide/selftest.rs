@@ -61,9 +61,7 @@ pub enum Verdict {
     /// It does not stand where its kind does.
     Off(f64),
     Silent,
-    /// This channel moved in its place.
     Moved(usize),
-    /// This channel reads the same.
     Bridged(usize),
 }
 
@@ -389,7 +387,6 @@ impl Selftest {
         moved > 0.0 && apart < ALIKE * moved && self.moved(&row, other) < 1.0
     }
 
-    /// A line for each fault, and the count.
     fn summary(&self) -> Vec<String> {
         let mut lines = vec![String::new()];
         let passes = |channel: usize| matches!(self.verdicts[channel], Some(Verdict::Pass(_)));

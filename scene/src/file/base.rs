@@ -28,7 +28,6 @@ struct Source {
     start: usize,
 }
 
-/// The scene, its bases, and the defaults.
 pub(super) struct Sources(Vec<Source>);
 
 impl Sources {

@@ -3,7 +3,6 @@
 use crate::file::sections::{Contact, Wet};
 use crate::schedule::{Span, smooth};
 
-/// Coulomb's two coefficients at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Friction {
     pub mu_s: f64,

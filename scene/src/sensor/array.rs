@@ -235,7 +235,6 @@ mod tests {
     const STILL: Shakes = Shakes { t_s: 0.0, released_n: 0.0, motor_speed: 0.0 };
     const LETS_GO: Shakes = Shakes { released_n: 0.5, ..STILL };
 
-    /// A quiet array of a scene that is changed so.
     fn made(change: impl FnOnce(&mut SceneFile)) -> Elements {
         let (name, text) = crate::builtin()[0];
         let mut scene = SceneFile::parse(text, name).unwrap();

@@ -80,7 +80,6 @@ impl Recording {
         self.uv.len()
     }
 
-    /// The electrodes that separate closing and opening best.
     pub(super) fn best_sites(&self) -> [usize; 2] {
         let pairs = FLEXORS.into_iter().flat_map(|flexor| EXTENSORS.map(|extensor| [flexor, extensor]));
         pairs.max_by(|a, b| self.turn(*a).total_cmp(&self.turn(*b))).unwrap_or([FLEXORS[0], EXTENSORS[0]])

@@ -64,7 +64,6 @@ impl Making {
 }
 
 impl Day {
-    /// The day on which it was made.
     pub const FIRST: Self =
         Self { source: 1.0, source_per_min: 0.0, ambient_mv: 0.0, aged_rad: 0.0, aged_optic: 1.0 };
 
