@@ -1,5 +1,4 @@
 //! The last seconds of telemetry, in RAM that a reset does not clear: after a fault they stay until a client has read them.
-//!
 //! Only telemetry writes it. A frame that a reset cuts short has a wrong CRC; the count of bytes is raised after they are written. A power
 //! cut leaves nothing.
 

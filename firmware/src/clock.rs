@@ -46,10 +46,9 @@ pub fn watch_crystal() {
     RCC.cr().modify(|w| w.set_csson(true));
 }
 
-/// Starts the clocks, out of a reset: HSE bypassed at 8 MHz, PLL to 100 MHz, AHB at 100 MHz, APB1 at 50, APB2 at 100; and those
-/// of the pins, the DMA controllers and the supply's guard.
-/// HSI only where there is no crystal: its tolerance overruns the serial line at 921 600 baud, but a hand that nobody hears is
-/// better than one that nobody can open.
+/// Starts the clocks, out of a reset: HSE bypassed at 8 MHz, PLL to 100 MHz, AHB at 100 MHz, APB1 at 50, APB2 at 100; and those of the
+/// pins, the DMA controllers and the supply's guard. HSI only where there is no crystal: its tolerance overruns the serial line at 921 600
+/// baud, but a hand that nobody hears is better than one that nobody can open.
 pub fn start(crystal: bool) {
     // A debugger is heard while the core sleeps.
     DBGMCU.cr().modify(|w| {

@@ -1,5 +1,4 @@
 //! The scan's own clock, and the one deadline on it: what waits for the converter waits until then at the longest.
-//!
 //! It is a compare register of TIM2, which counts microseconds in 32 bits: a new deadline is one store, far less than in the time
 //! driver's queue, and an old one needs no taking back.
 

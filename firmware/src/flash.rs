@@ -1,5 +1,4 @@
 //! The chip's last two flash sectors, 6 and 7, as the log's flash. `memory.x` keeps the image out of them.
-//!
 //! The core stands still while a word is programmed (16 us, at most 100) and while a sector is erased (1 s, at most 2); interrupts wait,
 //! DMA and timers go on. embassy's driver erases by bytes after a reset, twice as long, and waits for ever if the flash never gets ready.
 

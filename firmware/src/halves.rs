@@ -1,8 +1,6 @@
-//! The ring that DMA writes the converter's codes to: two halves of a frame each, one of which is read while the other is
-//! written.
-//!
-//! embassy's ring buffer gives any number of codes from anywhere in the ring, one by one. Here a frame is a half, which is
-//! read where it lies, two codes in a word.
+//! The ring that DMA writes the converter's codes to: two halves of a frame each, one of which is read while the other is written.
+//! embassy's ring buffer gives any number of codes from anywhere in the ring, one by one. Here a frame is a half, which is read where it
+//! lies, two codes in a word.
 
 use core::sync::atomic::{AtomicU32, Ordering, fence};
 

@@ -1,5 +1,4 @@
 //! The bounded boxes between control, which never waits, and the tasks of the serial line and of the store, which do.
-//!
 //! embassy's channels keep a `RefCell` inside, which is a way to panic.
 
 use core::cell::Cell;

@@ -1,5 +1,4 @@
 //! The image of the fingertip's microcontroller (STM32F411RE).
-//!
 //! Tasks move data; what it means is decided in `tenax-logic`. Who runs where, the most urgent first:
 //!
 //! | who | runs in | priority | worst if it were wrong |

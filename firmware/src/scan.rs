@@ -4,9 +4,8 @@
 //! at OVR, after which the converter is silent for ever; and it starts one scan by software ahead of the first timed one.
 //! So the sequence is written here, through the PAC, and so is its DMA ([`halves`](crate::halves)).
 //!
-//! The scan's timer and the deadline's count the same clock, so the two never drift apart and the instant of every
-//! frame is known without asking the converter: a frame that does not come in time is lost, and after a restart the
-//! sequence numbers go on where time has got to.
+//! The scan's timer and the deadline's count the same clock, so the two never drift apart and the instant of every frame is known without
+//! asking the converter: a frame that does not come in time is lost, and after a restart the sequence numbers go on where time has got to.
 
 use embassy_stm32::Peri;
 use embassy_stm32::pac::adc::regs::{Smpr1, Smpr2, Sqr1, Sqr2, Sqr3};
@@ -74,11 +73,9 @@ impl Scan {
         Self { _adc: adc, stream, ring, _timer: timer, deadline, due }
     }
 
-    /// Hands every frame to `on_frame` as soon as its last code has been converted, for ever. Frames that are lost are
-    /// handed over as such, so that whoever counts time by frames keeps time.
-    ///
-    /// `on_frame` has until the next frame begins, 87 us, to step the switches for it. All that waits stands in this one
-    /// function: an `async fn` that has an end can be asked again after it, which is a way to panic.
+    /// Hands every frame to `on_frame` as soon as its last code has been converted, for ever. Frames that are lost are handed over as such,
+    /// so that whoever counts time by frames keeps time. `on_frame` has until the next frame begins, 87 us, to step the switches for it.
+    /// All that waits stands in this one function: an `async fn` that has an end can be asked again after it, which is a way to panic.
     pub async fn run(mut self, mut on_frame: impl FnMut(&Frame)) -> ! {
         pac::TIM3.cr1().write(|w| w.set_cen(true));
         // The first trigger comes one period after the start.
@@ -122,8 +119,7 @@ impl Scan {
         }
     }
 
-    /// Gives up the frames that have begun: the instant, still to come, at which the scan before the next one has been
-    /// triggered.
+    /// Gives up the frames that have begun: the instant, still to come, at which the scan before the next one has been triggered.
     fn catch_up(&mut self, on_frame: &mut impl FnMut(&Frame)) -> Micros {
         loop {
             let arm_at = self.due.begins.before(SCAN_US / 2);

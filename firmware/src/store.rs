@@ -1,5 +1,4 @@
 //! The store task: what has to outlive a power cut goes into flash, a word every few ticks.
-//!
 //! Programming a word stalls the core, so each begins within 0.25 ms after a tick's end, when the next frame is 0.1 ms away or more: even
 //! at its longest, 0.1 ms, it is over before control is needed again. Nothing is erased while the hand works.
 

@@ -4,8 +4,7 @@
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
-/// A behaviour. It lasts until it ends by itself, by [`Down::End`](crate::wire::Down::End), or because
-/// a muscle becomes active.
+/// A behaviour. It lasts until it ends by itself, by [`Down::End`](crate::wire::Down::End), or because a muscle becomes active.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum Behaviour {
     /// The finger is stroked over a surface to measure its friction: slip is expected and not answered.

@@ -1,7 +1,5 @@
-//! The channel map: pin, rate and valid voltages of each signal.
-//!
-//! This table is the only place that knows the wiring. The firmware programs its converter from [`SCAN`], the logic
-//! names channels by the index constants, a recording's columns are called [`Channel::name`], and
+//! The channel map: pin, rate and valid voltages of each signal. This table is the only place that knows the wiring. The firmware programs
+//! its converter from [`SCAN`], the logic names channels by the index constants, a recording's columns are called [`Channel::name`], and
 //! `tenax tables wiring` prints it.
 
 use crate::front_end;

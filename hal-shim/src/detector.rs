@@ -1,7 +1,5 @@
-//! Names and reports of the detectors.
-//!
-//! A detector **says** slip: its own report. The report is **believed** unless the
-//! plausibility guard ignores it. It is **acted** on while the reflex closes because of it.
+//! Names and reports of the detectors. A detector **says** slip: its own report. The report is **believed** unless the plausibility guard
+//! ignores it. It is **acted** on while the reflex closes because of it.
 
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};

@@ -78,7 +78,6 @@ impl Frame {
 }
 
 /// The codes of one scan if the channels' pins have the codes in `pins` (0 to 4095) and the select lines show `select` (0 to 15).
-///
 /// This is the wiring seen from outside, with the inputs of known voltage: an emulated or simulated board uses it to put pins on the converter.
 pub fn scan_of_pins(pins: &[u16; COUNT], select: u8) -> Scan {
     let mut scan = [0; SCAN_LEN];

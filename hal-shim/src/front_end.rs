@@ -1,7 +1,5 @@
-//! Constants of the analogue front ends between sensors and pins: the logic turns
-//! volts into newtons with them, a scene or a recording's recipe newtons into volts.
-//!
-//! Every sensor has a live zero: at rest its pin is well above 0 V, so that a cut wire is noticed.
+//! Constants of the analogue front ends between sensors and pins: the logic turns volts into newtons with them, a scene or a recording's
+//! recipe newtons into volts. Every sensor has a live zero: at rest its pin is well above 0 V, so that a cut wire is noticed.
 
 /// PVDF: voltage at rest, the middle of the supply, mV.
 pub const PVDF_REST_MV: u32 = 1_650;
@@ -12,12 +10,10 @@ pub const PVDF_CUT_MV: u32 = 1_550;
 pub const FSR_REST_MV: u32 = 200;
 /// FSR: voltage above rest of a quadrant under 1 N, mV (assumed: a 10 kohm-class divider behind a buffer).
 pub const FSR_MV_AT_1N: f64 = 180.0;
-/// FSR: exponent of the power law between force and conductance (Interlink's guide: close to 1 above the turn-on force;
-/// 0.9 assumed).
+/// FSR: exponent of the power law between force and conductance (Interlink's guide: close to 1 above the turn-on force; 0.9 assumed).
 pub const FSR_EXPONENT: f64 = 0.9;
 
 /// FSR: voltage at the pin of a quadrant under `force_n` newtons, mV, before the converter clips it.
-///
 /// `powf` is not in `core`, so the caller passes it: `f64::powf` on a PC.
 pub fn fsr_mv(force_n: f64, powf: fn(f64, f64) -> f64) -> f64 {
     f64::from(FSR_REST_MV) + FSR_MV_AT_1N * powf(force_n.max(0.0), FSR_EXPONENT)
@@ -27,10 +23,8 @@ pub fn fsr_mv(force_n: f64, powf: fn(f64, f64) -> f64) -> f64 {
 /// (Prosthesis, figure 1; the cylinder's height over the lever arm of the quadrants, assumed).
 pub const FSR_TILT: f64 = 1.0;
 
-/// Forces on quadrants A, B, C and D, N, under a normal force and a shear at the tilting element.
-///
-/// The signs are those of the paper's formulas: `Fx = (A + B) - (C + D)`, `Fy = (A + D) - (C + B)`. A quadrant cannot
-/// pull: where the tilt would lift one, it reads zero.
+/// Forces on quadrants A, B, C and D, N, under a normal force and a shear at the tilting element. The signs are those of the paper's
+/// formulas: `Fx = (A + B) - (C + D)`, `Fy = (A + D) - (C + B)`. A quadrant cannot pull: where the tilt would lift one, it reads zero.
 pub fn fsr_quadrants_n(normal_n: f64, shear_x_n: f64, shear_y_n: f64) -> [f64; 4] {
     let even = normal_n / 4.0;
     let x = FSR_TILT * shear_x_n / 4.0;

@@ -53,9 +53,7 @@ impl MotorDrive {
     }
 }
 
-/// A board's motor bridge.
-///
-/// An implementation guarantees:
+/// A board's motor bridge. An implementation guarantees:
 /// - [`drive`](Self::drive) takes effect at once, never blocks, and never drives both sides at the same time, not even
 ///   between two calls;
 /// - before the first call, after [`MotorDrive::Coast`], and after a panic or a reset by the watchdog, neither side is

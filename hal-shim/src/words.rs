@@ -1,5 +1,4 @@
 //! Names of states, causes and faults, the same in the logic, on the wire and for people.
-//!
 //! New ones are added at the end: their place is their number on the wire.
 
 use core::cmp::Ordering;
@@ -12,12 +11,10 @@ use crate::detector::DetectorId;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum GripMode {
-    /// A sensor that the reflex needs is missing (at boot: not yet seen). The reflex commands nothing; the wearer
-    /// still drives the hand.
+    /// A sensor that the reflex needs is missing (at boot: not yet seen). The reflex commands nothing; the wearer still drives the hand.
     #[default]
     Standby,
-    /// A myosensor is active, a drive command holds, or a behaviour answers slip itself:
-    /// the reflex commands nothing.
+    /// A myosensor is active, a drive command holds, or a behaviour answers slip itself: the reflex commands nothing.
     Wearer,
     /// No other source drives the hand: the detectors are watched.
     Watch,

@@ -47,7 +47,6 @@ pub fn set(id: SettingId, value: i32) -> Down {
     Down::Set(Setting { id: id.number(), value })
 }
 
-/// A sum of twelve uniform numbers: mean 0, variance 1.
 pub fn gauss(rng: &mut ChaCha8Rng) -> f64 {
     (0..12).map(|_| rng.random_range(-0.5..0.5)).sum()
 }

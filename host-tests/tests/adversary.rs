@@ -1,6 +1,5 @@
 //! Random walks over the whole fingertip: muscles, faults, commands, lost frames, a teacher, a camera, settings at their ends, nonsense
 //! in flash. A bystander who uses none of the logic's code judges every frame. Each walk prints its seed.
-//!
 //! `TENAX_STEPS=10000000 TENAX_SEED=5 cargo test --release -p tenax-host-tests --test fingertip adversary -- --nocapture`
 
 use rand::rngs::ChaCha8Rng;
@@ -337,7 +336,6 @@ struct Seen {
     most_blind: u32,
     /// Activity at each place of the slow frame.
     active: [bool; 25],
-    /// The last changes of the pins.
     history: Vec<(u32, [Pin; 2])>,
     /// Last frame in which the extensor's muscle was above rest.
     asked_at: Option<u32>,

@@ -19,7 +19,6 @@ const CASES: u32 = 256;
 struct Noise(u64);
 
 impl Noise {
-    /// A sum of twelve uniform numbers: mean 0, variance 1.
     fn gauss(&mut self) -> f64 {
         let unit = |_| {
             self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);

@@ -32,7 +32,6 @@ fn pairs() -> Vec<[(SettingId, i32); 2]> {
     pairs.filter(|[one, other]| one.0 != other.0).collect()
 }
 
-/// A hand with these settings that holds 2.5 N at a ratio of 0.1.
 fn holding(settings: &[(SettingId, i32)]) -> Bench {
     let mut config = Config::default();
     for &(id, value) in settings {

@@ -48,7 +48,6 @@ fn closing_that_does_not_help_ends_at_half_as_much_again() {
     assert!((LOAD_N + 0.1..slides_n - 0.5).contains(&held_n), "{held_n} N");
 }
 
-/// A threshold of S1 that only a trusted line may set.
 #[test]
 fn with_s1_deaf_to_it_a_loud_slip_is_a_warning_still() {
     let mut bench = Bench::holding(65);

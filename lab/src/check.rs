@@ -9,7 +9,6 @@ pub mod wearer;
 
 use std::fmt::{self, Display};
 
-/// Whether a promise holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
     Pass,
@@ -68,7 +67,8 @@ impl Bar {
     /// the limit.
     pub fn short_of(Goal { what, goal, held }: Goal, value: f64, by: impl Display) -> Self {
         let holds = if held > goal { value <= held } else { value >= held };
-        Self::new(what, format!("{value:.3}; {by}"), format!("{held}, goal {goal}"), holds)
+        let measured = format!("{value:.3}; {by}");
+        Self::new(what, measured.trim_end_matches("; "), format!("{held}, goal {goal}"), holds)
     }
 
     pub fn unjudged(promise: impl Into<String>, measured: impl Into<String>, verdict: Verdict) -> Self {

@@ -78,13 +78,11 @@ impl Dataset {
         Ok(writer.into_inner()?)
     }
 
-    /// The recordings as they are read from the CSV.
     pub fn recordings(&self) -> anyhow::Result<Vec<labelled::Recording>> {
         let name = "array_dataset.csv";
         Ok(labelled::parse(self.csv()?.as_slice(), &library::choose(name.as_ref(), None)?, name)?)
     }
 
-    /// The manifest of these data, which are `csv` in `file`.
     pub fn manifest(&self, file: &str, csv: &[u8]) -> Manifest {
         let mut split: BTreeMap<Part, Counts> = BTreeMap::new();
         for (session, recordings) in &self.sessions {
@@ -123,7 +121,6 @@ pub struct Manifest {
     pub sha256: String,
     pub columns: &'static str,
     pub rate_hz: u32,
-    /// The material of the test alone.
     pub held_out: &'static str,
     pub split: BTreeMap<Part, Counts>,
 }

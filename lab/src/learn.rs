@@ -1,5 +1,4 @@
 //! `tenax learn`: a fingertip teaches itself slip from a camera, and shows what that is worth (Tada 2006, section III).
-//!
 //! A [`finger`] goes through lessons and held-out [`trial`]s on the host's logic ([`bench`]). Then it is tried in an hour of
 //! [`holding`], and in lifts and pours with the [`reflex`]; other fingers are drawn.
 

@@ -1,5 +1,4 @@
 //! The papers' studies: what many runs show of the fingertip, as reports and charts.
-//!
 //! A folder a study, a file a command in [`cli`]. One study may use another's result (charts draw the others'), never the reverse.
 #![forbid(unsafe_code)]
 

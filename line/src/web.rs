@@ -1,7 +1,5 @@
-//! The page of `tenax monitor`, in a browser of this machine.
-//!
-//! Changes come as server-sent events, at most twenty a second. Only this machine is served, and only pages of this address may ask: a page
-//! of another site in the same browser may not.
+//! The page of `tenax monitor`, in a browser of this machine. Changes come as server-sent events, at most twenty a second. Only this
+//! machine is served, and only pages of this address may ask: a page of another site in the same browser may not.
 
 pub mod source;
 pub mod view;
@@ -76,7 +74,6 @@ impl Web {
         lock(&self.view)
     }
 
-    /// Whether a page of this address sent the request.
     fn is_ours(&self, request: &Request) -> bool {
         let header = |name: &'static str| {
             request.headers().iter().find(|header| header.field.equiv(name)).map(|own| own.value.as_str())

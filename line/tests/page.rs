@@ -51,7 +51,6 @@ impl Web {
         answer(self.ask("POST", path))
     }
 
-    /// The state after each change.
     pub fn events(&self) -> impl Iterator<Item = Value> + use<> {
         let lines = BufReader::new(self.ask("GET", "/events")).lines().map(Result::unwrap);
         let batch = |line: String| serde_json::from_str(line.strip_prefix("data: ")?).unwrap();

@@ -1,5 +1,4 @@
 //! The page's view of a board that goes away and comes back, of garbage and of another version.
-//!
 //! A program of its own: what another test starts would inherit the pseudo-terminals and pass for their holder.
 #![cfg(unix)]
 
@@ -21,7 +20,6 @@ fn frame(sequence: u16) -> Vec<u8> {
     encode(sequence, &message, &mut [0; FRAME_MAX]).expect("it fits").to_vec()
 }
 
-/// A frame of another version, with a right CRC.
 fn foreign() -> Vec<u8> {
     let mut plain = vec![VERSION + 1, 0, 3, 0];
     let crc = Crc::<u32>::new(&CRC_32_ISO_HDLC).checksum(&plain);

@@ -15,7 +15,6 @@ use tenax_sim::session::{Board, load_scene};
 
 use crate::serving::{BENCH, Serving, command, tenax, trusting};
 
-/// The bytes of a scene's line, with every frame or without.
 pub fn line(scene: &str, streams_at_start: bool) -> Vec<u8> {
     let plant = Use { live: None, streams_at_start }.of(World::new(&load_scene(scene).unwrap(), 1));
     Board::Host.run(plant, &mut |_| {}).unwrap().0.line

@@ -32,7 +32,6 @@ pub fn trusting() -> Serving {
 }
 
 pub struct Serving {
-    /// Addresses of the line and of the true state.
     pub place: String,
     pub truth: String,
     person: Person,

@@ -1,5 +1,4 @@
-//! Token bucket for commands of the line: enough for any tool, too few to be late for or to crowd telemetry
-//! out.
+//! Token bucket for commands of the line: enough for any tool, too few to be late for or to crowd telemetry out.
 
 use tenax_hal_shim::wire::Down;
 

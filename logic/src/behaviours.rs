@@ -1,6 +1,5 @@
-//! Behaviours: movements on request of the line (FingerVision 2017, section II). A behaviour asks to tighten
-//! or to relax; wearer, line and reflex come before it. Stroke, hand-over and a part of a turn answer slip
-//! themselves ([`Running::answers_slip`]).
+//! Behaviours: movements on request of the line (FingerVision 2017, section II). A behaviour asks to tighten or to relax; wearer, line and
+//! reflex come before it. Stroke, hand-over and a part of a turn answer slip themselves ([`Running::answers_slip`]).
 
 mod felt;
 mod gentle_grasp;

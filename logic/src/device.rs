@@ -1,5 +1,4 @@
-//! The fingertip as a device on a line: frames and commands in, drives, messages and records out. Firmware
-//! and host share it.
+//! The fingertip as a device on a line: frames and commands in, drives, messages and records out. Firmware and host share it.
 //!
 //! ```
 //! use tenax_hal_shim::frame::Frame;

@@ -1,5 +1,4 @@
-//! The decisions of the fingertip: sensor samples in, motor drive out. No heap, no I/O, no clock: time is
-//! counted in frames of 0.5 ms.
+//! The decisions of the fingertip: sensor samples in, motor drive out. No heap, no I/O, no clock: time is counted in frames of 0.5 ms.
 //!
 //! | step | modules, in the order in which data passes them |
 //! |---|---|

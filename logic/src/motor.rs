@@ -1,15 +1,13 @@
-//! Limits of the motor. A stopped motor is not driven, and the gear holds the object. The bridge's mirror
-//! shows duty times the winding's current (DRV8874, section 7.3.3): of a blocked motor, duty squared times
-//! the stall current.
+//! Limits of the motor. A stopped motor is not driven, and the gear holds the object. The bridge's mirror shows duty times the winding's
+//! current (DRV8874, section 7.3.3): of a blocked motor, duty squared times the stall current.
 //!
 //! | judged once a slow frame | from | stops |
 //! |---|---|---|
 //! | stall: half of a blocked motor's current or more, and the fingers stand still | current and opening, or the one that is left | the way it was driven |
 //! | heat: the current shown times the stall current | current, or else the duty | closing |
 //!
-//! A stalled direction is driven again after 0.15 s without a request for it, after one for the other
-//! direction, or for a drive stronger by an eighth. Heat never stops an opening: a hand that cannot let go is
-//! worse than a hot motor.
+//! A stalled direction is driven again after 0.15 s without a request for it, after one for the other direction, or for a drive stronger by
+//! an eighth. Heat never stops an opening: a hand that cannot let go is worse than a hot motor.
 
 pub mod settings;
 

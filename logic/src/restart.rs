@@ -31,8 +31,7 @@ pub struct Start {
     pub stay_off: bool,
 }
 
-/// `restarts`: kept count of restarts in a row, of panics, hangs and brown-outs. A lost crystal neither counts
-/// nor clears the count.
+/// `restarts`: kept count of restarts in a row, of panics, hangs and brown-outs. A lost crystal neither counts nor clears the count.
 pub fn judge(flags: Flags, mark: Option<Mark>, restarts: u32) -> Start {
     let mark = mark.filter(|_| flags.software);
     let (cause, after) = match (flags, mark) {

@@ -1,6 +1,5 @@
-//! Storage through power cuts: a log of records in two sectors of flash; the newest whole one of each kind
-//! counts. An erase stalls the core, so [`open`] makes room at boot only. A cut at any instant leaves, of each
-//! kind, the record before or after, whole:
+//! Storage through power cuts: a log of records in two sectors of flash; the newest whole one of each kind counts. An erase stalls the
+//! core, so [`open`] makes room at boot only. A cut at any instant leaves, of each kind, the record before or after, whole:
 //! - a record counts only with its CRC and, programmed after it, its commit word;
 //! - only a record that counts is skipped by its length, so a cut tag hides nothing that was appended later;
 //! - a session begins with a word of zeros, since the first blank word may be half programmed;
@@ -65,8 +64,7 @@ impl Found {
     }
 }
 
-/// Finds the records that count and makes room, before anything moves. If the flash fails, nothing more is
-/// saved.
+/// Finds the records that count and makes room, before anything moves. If the flash fails, nothing more is saved.
 pub fn open(area: &mut impl FlashArea, erase: Erase) -> (Log, Found) {
     let [a, b] = Sector::BOTH.map(|sector| Survey::of(area, sector));
     let (active, stale) = if b.rank() > a.rank() { (b, a) } else { (a, b) };

@@ -46,7 +46,6 @@ impl Node {
     }
 }
 
-/// An entity's id: the hash of its token.
 pub fn gid(token: &str) -> [u8; GID] {
     // The low half first, each little-endian.
     xxh3_128(token.as_bytes()).to_le_bytes()

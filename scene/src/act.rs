@@ -66,7 +66,6 @@ const TAXEL_V: f64 = 0.4;
 const TURNED_V: f64 = 0.5;
 const QUADRANT_N: f64 = 3.0;
 
-/// Sensors that are touched, and weights that lie on the finger.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Touches {
     touched: Vec<(Span, usize)>,

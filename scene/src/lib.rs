@@ -1,5 +1,4 @@
 //! Worlds in which the fingertip is tried: an object, a gripper, a wearer, and what the sensors make of them.
-//!
 //! A [`SceneFile`] is parsed from TOML, a [`World`] is built from it and a seed and stepped one scan at a time through
 //! [`plant::Plant`]. The same file and seed give the same bytes on every machine: noise is ChaCha8, functions are `libm`'s.
 //!

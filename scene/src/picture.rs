@@ -20,33 +20,9 @@ pub struct Options {
     pub fisheye: bool,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stress {
-    /// Brightness of the object over that of the wall, levels; darker where there is no room.
-    pub apart: Option<f64>,
-    pub colour: Option<f64>,
-    /// Contrast of its pattern, levels.
-    pub texture: Option<f64>,
-    /// Factor of slides and turns.
-    pub speed: f64,
-    /// Part by which the mains' light goes up and down.
-    pub flicker: f64,
-    /// Part of the markers that is gone from the grasp on.
-    pub markers_lost: f64,
-}
-
-impl Default for Stress {
-    fn default() -> Self {
-        Self { apart: None, colour: None, texture: None, speed: 1.0, flicker: 0.0, markers_lost: 0.0 }
-    }
-}
-
-const FLICKER_HZ: f64 = 100.0;
-
 #[derive(Clone, Debug)]
 pub struct Session {
     options: Options,
-    stress: Stress,
     story: Story,
     lens: Lens,
     background: Texture,
@@ -81,10 +57,6 @@ pub struct Truth {
 
 impl Session {
     pub fn new(options: Options) -> Self {
-        Self::under(options, Stress::default())
-    }
-
-    pub fn under(options: Options, stress: Stress) -> Self {
         let mut noise = Noise::new(options.seed, Source::Picture);
         let middle = ((WIDTH as f64 - 1.0) / 2.0, (HEIGHT as f64 - 1.0) / 2.0);
         let focal_px = if options.fisheye { noise.between(190.0, 300.0) } else { f64::INFINITY };
@@ -93,20 +65,11 @@ impl Session {
         let base = [0.0; 3].map(|_: f64| wall * noise.between(0.85, 1.1));
         let background = Texture::drawn(&mut noise, base, 30.0, 60);
         // An object that differs from the wall in colour or in brightness, and may share parts of both.
-        let mut own = [0.0; 3].map(|_: f64| noise.between(30.0, 220.0));
-        if let Some(apart) = stress.apart {
-            let sign = if wall + apart < 220.0 { 1.0 } else { -1.0 };
-            own = base.map(|level| level + sign * apart);
-        }
-        if let Some(colour) = stress.colour {
-            // Grey is half green, so the brightness stays.
-            let [red, green, blue] = base;
-            own = [red - colour, green + colour / 3.0, blue + colour / 3.0];
-        }
+        let own = [0.0; 3].map(|_: f64| noise.between(30.0, 220.0));
         let contrast = noise.between(15.0, 45.0);
-        let surface = Texture::drawn(&mut noise, own, stress.texture.unwrap_or(contrast), 500);
+        let surface = Texture::drawn(&mut noise, own, contrast, 500);
         let half = (noise.between(65.0, 95.0), noise.between(16.0, 30.0));
-        let story = Story::drawn(&mut noise, stress.speed);
+        let story = Story::drawn(&mut noise);
         let (pitch, radius_px) = (noise.between(38.0, 48.0), noise.between(3.6, 5.4));
         let level = noise.between(10.0, 32.0);
         let mut markers = Vec::new();
@@ -136,7 +99,6 @@ impl Session {
             .collect();
         Self {
             options,
-            stress,
             story,
             lens,
             background,
@@ -174,9 +136,8 @@ impl Session {
         for y in 0..HEIGHT {
             let row_s = self.row_time_s(t_s, y as f64);
             let state = self.story.at(row_s);
-            let mains = libm::sin(std::f64::consts::TAU * FLICKER_HZ * row_s);
-            let light = (state.exposure * (1.0 + self.stress.flicker * mains)) as f32;
-            let near = self.near(&state, (row_s, y as f64));
+            let light = state.exposure as f32;
+            let near = self.near(&state, y as f64);
             for x in 0..WIDTH {
                 let at = y * WIDTH + x;
                 let colour = self.colour(&state, &near, at);
@@ -192,12 +153,9 @@ impl Session {
         t_s + self.readout_s * y / HEIGHT as f64
     }
 
-    fn near(&self, state: &State, (row_s, y): (f64, f64)) -> Vec<((f64, f64), f64, f32)> {
-        let lost = if row_s < story::GRASPED_S { 0.0 } else { self.stress.markers_lost };
-        // Lost ones lie everywhere: each step of the golden ratio is far from those before.
-        let is_there = |number: usize| (number as f64 * 0.618_034).fract() >= lost;
-        let there = self.markers.iter().enumerate().filter(|(number, _)| is_there(*number));
-        let moved = there.map(|(_, marker)| (self.moved(state, marker.at), marker.radius_px, marker.level));
+    fn near(&self, state: &State, y: f64) -> Vec<((f64, f64), f64, f32)> {
+        let moved =
+            self.markers.iter().map(|marker| (self.moved(state, marker.at), marker.radius_px, marker.level));
         moved.filter(|(at, radius, _)| (self.lens.seen(*at).1 - y).abs() < radius + 3.0).collect()
     }
 

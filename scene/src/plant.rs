@@ -35,7 +35,6 @@ pub enum Calibrated {
 }
 
 /// A world (a scene) or a recording, seen from the board, one scan at a time.
-///
 /// One that is put around another names it as `within`, and says itself only what is different.
 pub trait Plant: Send {
     /// The plant that this one is put around; every method below that is not overridden asks it.
@@ -109,7 +108,6 @@ pub trait Plant: Send {
         self.within().is_some_and(Plant::resets)
     }
 
-    /// True while the board's button is held down.
     fn button(&self) -> bool {
         self.within().is_some_and(Plant::button)
     }

@@ -48,10 +48,8 @@ impl Noise {
         Self(rng)
     }
 
-    /// Normally distributed, mean 0, standard deviation 1, within 4; excess kurtosis -0.04, ends at 7.
-    ///
-    /// Of a draw of 64 bits, 48 are coins, whose heads are binomial, and 16 fill the gaps between the counts evenly: no function of any
-    /// platform's.
+    /// Normally distributed, mean 0, standard deviation 1, within 4; excess kurtosis -0.04, ends at 7. Of a draw of 64 bits, 48 are coins,
+    /// whose heads are binomial, and 16 fill the gaps between the counts evenly: no function of any platform's.
     pub(crate) fn normal(&mut self) -> f64 {
         let [one] = self.normals();
         one

@@ -1,9 +1,8 @@
 //! The films of a scene against real films.
 //!
-//! The figures are measured from the project's evaluation recordings (`pvdf_quiet`, `pvdf_contact`, `pvdf_slip_onset`:
-//! P(VDF-TrFE) in a soft fingertip, 2 kHz, two films; GitHub
-//! cosmiclab-unige/Piezoelectric-Tactile-Contact-and-Slip-Detection-Dataset, by way of the README beside them). None of
-//! the samples is here. A model within a factor of two of a figure passes.
+//! The figures are measured from the project's evaluation recordings (`pvdf_quiet`, `pvdf_contact`, `pvdf_slip_onset`: P(VDF-TrFE) in a
+//! soft fingertip, 2 kHz, two films; GitHub cosmiclab-unige/Piezoelectric-Tactile-Contact-and-Slip-Detection-Dataset, by way of the README
+//! beside them). None of the samples is here. A model within a factor of two of a figure passes.
 
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -14,7 +13,6 @@ use tenax_hal_shim::channel::{FRAME_HZ, PVDF_COUNT, SCANS_PER_FRAME};
 use tenax_hal_shim::front_end::PVDF_REST_MV;
 use tenax_scene::SceneFile;
 
-/// From film to pin.
 const GAIN: f64 = 20.0;
 /// Films 1 to 12 at 2 kHz, mV at the film.
 type Films = [Vec<f64>; PVDF_COUNT];

@@ -1,8 +1,6 @@
-//! The friction model against a real finger on a friction rig: the rise, the peak and the fall of Ft/Fn.
-//!
-//! The figures are measured from the project's evaluation recording `friction_rig_10khz.csv` (GitHub
-//! data-driven-playback-of-natural-tactile-texture, 10 kHz, 0.5 N, plate driven off to 40 mm/s) by the
-//! definitions below. None of its samples is here; where the recording is at hand, it is measured once more.
+//! The friction model against a real finger on a friction rig: the rise, the peak and the fall of Ft/Fn. The figures are measured from the
+//! project's evaluation recording `friction_rig_10khz.csv` (GitHub data-driven-playback-of-natural-tactile-texture, 10 kHz, 0.5 N, plate
+//! driven off to 40 mm/s) by the definitions below. None of its samples is here; where the recording is at hand, it is measured once more.
 
 use std::path::Path;
 
@@ -19,7 +17,6 @@ struct Onset {
     drop: f64,
 }
 
-/// The recording's, by [`onset`].
 const RECORDED: Onset =
     Onset { peak: 0.690, rise_s: 0.0420, passes_s: [0.0236, 0.0169, 0.0122], drop: 0.2276 };
 
@@ -43,7 +40,6 @@ fn within(value: f64, figure: f64, part: f64) -> bool {
     (value / figure - 1.0).abs() <= part
 }
 
-/// The model beside an onset that was recorded.
 fn assert_reproduced(recorded: &Onset) {
     let mut rows = Vec::new();
     run(&scene("rig"), Reflex::None, |world, _| {

@@ -1,5 +1,4 @@
 //! Whatever a scene file may state, the step of one scan fits twice into every bound, or the file is refused.
-//!
 //! Asked of the worlds, not of the check: an accepted scene is run, and nothing in it may swing up or press too hard.
 
 use proptest::prelude::*;

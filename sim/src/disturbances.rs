@@ -4,7 +4,6 @@
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 
-/// The scene's name, for `tenax run --scene`.
 pub const NAME: &str = "disturbance-hour";
 
 pub fn text(seed: u64, minutes: u32) -> String {

@@ -1,11 +1,10 @@
 //! The one definition of caught, and of a false alarm: `run`, `evaluate` and `learn` score with it.
 //!
-//! A macro slip is **caught** if a detection begins between its micro onset and 50 ms after its macro onset: `early` if that is
-//! before the macro onset. One that begins later is **late**, until 50 ms after the slip's end: a detection may take so long
-//! there, too. A verdict that stood before the
-//! micro onset is no detection: if nothing begins within the slip, it was **said before**. What begins outside every slip is a
-//! **false alarm**, counted by what was going on. What the wearer does on purpose is neither: slips that they meant are left
-//! out, and so is what begins in one or while a muscle is active.
+//! A macro slip is **caught** if a detection begins between its micro onset and 50 ms after its macro onset: `early` if that is before the
+//! macro onset. One that begins later is **late**, until 50 ms after the slip's end: a detection may take so long there, too. A verdict
+//! that stood before the micro onset is no detection: if nothing begins within the slip, it was **said before**. What begins outside every
+//! slip is a **false alarm**, counted by what was going on. What the wearer does on purpose is neither: slips that they meant are left out,
+//! and so is what begins in one or while a muscle is active.
 //!
 //! Micro slip that never became macro slip is no slip to be caught. A detection in it is right about the contact and the reflex
 //! may have prevented the slip; it is a false alarm all the same, and `in_micro_slip` says how many are of that kind.

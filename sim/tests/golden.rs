@@ -1,5 +1,4 @@
 //! The golden gate: one hash of every decision, event, drive and force of each shipped scene and recording, on the host's logic.
-//!
 //! A change that is not meant to change a decision leaves `golden.txt` as it is. `TENAX_GOLDEN=write` writes it anew.
 
 use std::fs;

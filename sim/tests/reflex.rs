@@ -1,5 +1,4 @@
 //! The reflex on loads and disturbances that its scenes were not built with: a weight that comes at once, knocks of every ringing.
-//!
 //! `TENAX_SEEDS=12 cargo test --release -p tenax-sim --test all reflex -- --nocapture`
 
 use crate::common::{asked, parsed, text};

@@ -3,7 +3,6 @@
 pub const WIDTH: usize = 320;
 pub const HEIGHT: usize = 240;
 pub const PIXELS: usize = WIDTH * HEIGHT;
-/// Bytes of a picture of three planes.
 pub const FRAME_BYTES: usize = 3 * PIXELS;
 
 pub type Plane = [u8; PIXELS];

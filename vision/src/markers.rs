@@ -29,7 +29,6 @@ const FAILED_SHARE_FRAMES: u32 = 6;
 /// Readings in a row, each near the one before, that a marker must give after that before it counts again.
 const PROBATION: u8 = 3;
 
-/// Reason why a marker was not found in a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Failure {
     DarkPixels,
@@ -113,7 +112,6 @@ impl Marker {
 #[derive(Clone, Debug)]
 pub struct Markers {
     markers: Vec<Marker>,
-    /// The nearest others of each.
     neighbours: Vec<Vec<u8>>,
 }
 

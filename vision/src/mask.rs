@@ -185,7 +185,6 @@ pub(crate) fn eight_bits(bytes: [u8; 8]) -> u8 {
     (u64::from_le_bytes(bytes).wrapping_mul(0x0102_0408_1020_4080) >> 56) as u8
 }
 
-/// Each pixel's left and right neighbours.
 fn beside(row: &[Word; WORDS]) -> [[Word; WORDS]; 2] {
     let left = |word: usize| row[word] << 1 | if word > 0 { row[word - 1] >> (BITS - 1) } else { 0 };
     let right = |word: usize| row[word] >> 1 | if word + 1 < WORDS { row[word + 1] << (BITS - 1) } else { 0 };

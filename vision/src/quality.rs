@@ -30,7 +30,6 @@ pub struct Watch {
 }
 
 impl Watch {
-    /// Takes a picture in which so many of the markers are found.
     pub fn picture(
         &mut self,
         grey: &Plane,

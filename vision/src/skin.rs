@@ -8,7 +8,6 @@ const REACH_PX: f32 = 75.0;
 /// Below this sum of weights no marker is near.
 const WEIGHT_MIN: f32 = 0.5;
 
-/// Places of the sure markers in the picture before.
 #[derive(Clone, Debug, Default)]
 pub struct Skin {
     before: Vec<Option<Point>>,

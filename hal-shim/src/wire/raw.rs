@@ -1,6 +1,4 @@
-//! The samples of every frame, for recordings: enough to replay every decision bit for bit.
-//!
-//! Five frames go up in a message, 25 bytes each:
+//! The samples of every frame, for recordings: enough to replay every decision bit for bit. Five frames go up in a message, 25 bytes each:
 //!
 //! | bytes | what |
 //! |---|---|

@@ -30,8 +30,7 @@ pub struct Forces {
 }
 
 impl Forces {
-    /// The margin of the grip, mN: S2 x Fn - Ft, the shear that the finger could still carry. None
-    /// while there is no ratio.
+    /// The margin of the grip, mN: S2 x Fn - Ft, the shear that the finger could still carry. None while there is no ratio.
     pub fn margin_mn(&self, s2_permille: u16) -> Option<i32> {
         self.ratio_permille?;
         // A force is below 2^17 mN.

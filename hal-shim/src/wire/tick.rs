@@ -1,5 +1,4 @@
 //! The decisions of one tick, and their four to nine bytes on the line.
-//!
 //! Twenty-five of these go up 80 times a second, more than everything else together, and each byte costs the core twenty
 //! instructions (checksum and framing). So the fields have their places, and those that are usually 0 are left out:
 //!

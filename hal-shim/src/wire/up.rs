@@ -24,8 +24,7 @@ pub struct Counters {
     pub commands_skipped: u32,
     /// The longest time that a frame took control, from its last code to the end of everything it caused, us.
     pub control_us_max: u32,
-    /// The part of the core's time that control took since the counters before, per mille. What the serial line's tasks take
-    /// is not in it.
+    /// The part of the core's time that control took since the counters before, per mille. What the serial line's tasks take is not in it.
     pub control_permille: u16,
 }
 

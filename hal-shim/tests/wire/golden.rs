@@ -1,5 +1,4 @@
 //! `python/tenax/wire.json` follows from the types of the messages: the types, and the bytes of a message of each kind.
-//!
 //! A changed byte would let an older monitor read nonsense: the file is only written when [`VERSION`] is above its own. The test fails
 //! once after it has written, so that a person looks at the change.
 

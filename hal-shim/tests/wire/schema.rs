@@ -8,7 +8,6 @@ use postcard_schema::schema::{
 #[derive(Default)]
 pub struct Types(Vec<&'static NamedType>);
 
-/// A field's type as JSON.
 fn reference(of: &NamedType) -> String {
     match of.ty {
         _ if is_packed(of) => format!("\"{}\"", of.name),
@@ -102,7 +101,6 @@ impl Types {
         }
     }
 
-    /// A line a type.
     pub fn json(&self) -> Vec<String> {
         let line = |of: &&NamedType| match of.ty {
             Ty::Struct(values) => format!("\"{}\": {{\"struct\": {}}}", of.name, fields(values)),

@@ -1,6 +1,5 @@
 //! The task of the map and the failures: Tada's pick-up (figures 5 and 6) as statistics without physics, stated completely so that
 //! its theory can be worked out.
-//!
 //! One trial: its phases in ms, the true codes v1 and v2, the grasping force P and the shear S relative to their maxima:
 //!
 //! | from | phase | v1 | v2 | P | S |
@@ -14,10 +13,9 @@
 //!
 //! Each code is taught as long as its opposite: why that matters is in `docs/hebbian.md`.
 //!
-//! The camera sees each 66 ms late, at its next picture (33 ms). A vibration receptor gives `0.6 exp(0.5 g)`, at most 1, while it
-//! slips, g a first-order Gauss process of 20 ms, half of it common to all, and noise `0.02 / depth` all the time. A
-//! pressure receptor gives `a P + b S` with `|a| + |b| = 1` of its own, and noise of 0.02. The last receptor is an offset:
-//! 0.8, whatever happens.
+//! The camera sees each 66 ms late, at its next picture (33 ms). A vibration receptor gives `0.6 exp(0.5 g)`, at most 1, while it slips, g
+//! a first-order Gauss process of 20 ms, half of it common to all, and noise `0.02 / depth` all the time. A pressure receptor gives `a P +
+//! b S` with `|a| + |b| = 1` of its own, and noise of 0.02. The last receptor is an offset: 0.8, whatever happens.
 
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};

@@ -8,7 +8,6 @@ use tenax_sim::plot::sheet::{Axis, Mark, Panel, Series, Sheet};
 use super::{Chart, csv};
 use crate::evaluate::emg::curves::{self, Point};
 
-/// A rate of none is drawn here.
 const LEAST_PER_HOUR: f64 = 1.0;
 
 /// Plays everybody in a folder with the hand and with plain control, each asking for more and for less. Fails if nobody is there.

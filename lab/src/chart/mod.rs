@@ -7,7 +7,6 @@ pub mod table;
 use tenax_sim::plot::sheet::Sheet;
 use tenax_sim::plot::sheet::draw::svg;
 
-/// A chart and the numbers in it.
 #[derive(Clone, Debug)]
 pub struct Chart {
     pub name: &'static str,

@@ -1,6 +1,5 @@
-//! `tenax chart table`: slips caught, false alarms and cost of each detector, on the same fingertips, scenes and hours.
+//! `tenax chart table`: slips caught and false alarms of each detector, on the same fingertips, scenes and hours.
 
-pub mod costs;
 pub mod heard;
 pub mod rivals;
 pub mod scored;
@@ -13,7 +12,6 @@ use tenax_logic::array::{FEATURES, Features};
 use tenax_sim::jobs::Jobs;
 
 use super::Progress;
-use costs::Costs;
 use heard::{Heard, Judge, Kind, Plan};
 use rivals::{Row, learn};
 use scored::{Between, Scored};
@@ -43,16 +41,12 @@ pub struct Line {
     pub quiet: Option<Between>,
     pub disturbed: Option<Between>,
     pub slipping: Option<f64>,
-    /// Processor time of a frame of 0.5 ms on this PC, ns, mean; and as a multiple of S1's.
-    pub ns: Option<f64>,
-    pub times_s1: Option<f64>,
     /// The threshold that was chosen on other fingertips.
     pub threshold: Option<i32>,
 }
 
 impl Line {
-    fn new(row: &Row, scored: &Scored, costs: &Costs) -> Self {
-        let ns = costs.of(row.parts);
+    fn new(row: &Row, scored: &Scored) -> Self {
         Self {
             name: row.name.clone(),
             recall_1mm: scored.recall(),
@@ -61,8 +55,6 @@ impl Line {
             quiet: scored.false_per_hour(Kind::Quiet),
             disturbed: scored.false_per_hour(Kind::Disturbed),
             slipping: scored.false_per_hour(Kind::Slips).map(|[value, ..]| value),
-            ns,
-            times_s1: ns.zip(costs.of(&["s1"])).map(|(own, s1)| own / s1),
             threshold: row.threshold,
         }
     }
@@ -109,7 +101,7 @@ fn keeps(steps: Steps) -> Judge {
 }
 
 /// Learns, chooses, hears and scores. Fails if a scene cannot be made.
-pub fn table(plans: &[Plan; 3], costs: &Costs, progress: Progress) -> anyhow::Result<Table> {
+pub fn table(plans: &[Plan; 3], progress: Progress) -> anyhow::Result<Table> {
     let [learned, chosen, scored] = plans;
     let jobs = Jobs::new(plans.iter().map(Plan::count).sum(), progress);
     let steps = Steps::default();
@@ -132,7 +124,7 @@ pub fn table(plans: &[Plan; 3], costs: &Costs, progress: Progress) -> anyhow::Re
     }
     let fresh = || rows.iter().flat_map(|row| row.judges(row.threshold)).collect();
     let heard = hear(scored, true, &fresh, &jobs)?;
-    Ok(Table::of(&rows, &heard, scored, costs))
+    Ok(Table::of(&rows, &heard, scored))
 }
 
 /// The threshold that catches the most slips of a millimetre within the cap; if there is none, the one with the fewest false alarms.
@@ -150,7 +142,7 @@ fn choose(grid: &[i32], heard: &[Heard], from: usize, cap: f64) -> Option<i32> {
 }
 
 impl Table {
-    fn of(rows: &[Row], heard: &[Heard], plan: &Plan, costs: &Costs) -> Self {
+    fn of(rows: &[Row], heard: &[Heard], plan: &Plan) -> Self {
         let whole = Scored::of(heard, 0..0);
         let data = format!(
             "{} fingertips of seed {}: {} pours and picks, {:.1} h quiet, {:.1} h disturbed",
@@ -164,7 +156,7 @@ impl Table {
         let line = |row: &Row| {
             let judges = row.judges(None).len();
             from += judges;
-            Line::new(row, &Scored::of(heard, from - judges..from), costs)
+            Line::new(row, &Scored::of(heard, from - judges..from))
         };
         Self { data, slips_1mm: whole.count(), rows: rows.iter().map(line).collect() }
     }

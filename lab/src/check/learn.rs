@@ -61,7 +61,7 @@ pub fn bars() -> anyhow::Result<Vec<Bar>> {
             goal("learn: false alarms of slip, and of warnings, in three hours of holding", 0.0, 1.0),
             in_3_h,
             format_args!(
-                "slip {}, {} of them in micro slip, warnings {}, in {:.2} h with knocks of 50 Hz to 2 kHz, swings, motor noise",
+                "slip {}, {} of them in micro slip, warnings {}, in {:.2} h with disturbances",
                 holding.slip.count, holding.slip.in_micro_slip, holding.warning.count, holding.slip.hours
             ),
         ),

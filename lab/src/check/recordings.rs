@@ -1,8 +1,6 @@
-//! Real input: what each kind of recording must and must not set off.
-//!
-//! The recordings are not part of the project. Every recording in the folder whose name has a rule here is played, so more
-//! of the same kinds can simply be put there. The first of each kind is played on the board and on the host, which have to say
-//! the same; the others on the host alone: emulated, all of them take 4 minutes of a core.
+//! Real input: what each kind of recording must and must not set off. The recordings are not part of the project. Every recording in the
+//! folder whose name has a rule here is played, so more of the same kinds can simply be put there. The first of each kind is played on the
+//! board and on the host, which have to say the same; the others on the host alone: emulated, all of them take 4 minutes of a core.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -16,7 +14,6 @@ use super::{Bar, Group, Verdict};
 /// On the rig nothing slides before this, s.
 const RIG_STILL_UNTIL_S: f64 = 1.5;
 
-/// A kind of recording, known by its name.
 struct Rule {
     pattern: &'static str,
     promise: &'static str,
@@ -97,8 +94,8 @@ fn bar(rule: &Rule, file: &Path, name: &str, emulated: Option<&Board>) -> anyhow
         return Ok(Bar::new(promise, format!("{figure}; on the host"), "", holds));
     };
     let same = judged(board)? == (figure.clone(), holds);
-    let word = if same { "the same" } else { "NOT the same" };
-    Ok(Bar::new(promise, format!("{figure}; {word} on the {} board", board.name()), "", holds && same))
+    let word = if same { "too" } else { "NOT the same" };
+    Ok(Bar::new(promise, format!("{figure}; {} {word}", board.name()), "", holds && same))
 }
 
 fn rig(report: &Report) -> (String, bool) {

@@ -11,7 +11,6 @@ use super::{Bar, Verdict};
 
 const TWO_SLOW_FRAMES_MS: f64 = 25.0;
 
-/// The bars over every scene of the repository, on the host's logic.
 pub fn scenes() -> anyhow::Result<Vec<Bar>> {
     let (mut while_active, mut elsewhere, mut slowest_ms, mut opened) = (0, 0, 0f64, 0);
     for (name, _) in builtin() {

@@ -32,7 +32,7 @@ enum Subject {
     Front,
     /// Accuracy and latency of intent recognition on recorded people against false motions: the hand and plain control
     Emg,
-    /// Slips caught, false alarms and processor time of each detector, pairs, the hand and plain rivals, as a report
+    /// Slips caught and false alarms of each detector, pairs, the hand and plain rivals, as a report
     Table,
 }
 
@@ -41,8 +41,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         Subject::Front => with_bar("front", |progress| front::front(progress))?,
         Subject::Emg => emg::chart(&workspace::root()?.join(RECORDINGS))?,
         Subject::Table => {
-            let costs = table::costs::Costs::measured()?;
-            let table = with_bar("table", |progress| table::table(&table::PLANS, &costs, progress))?;
+            let table = with_bar("table", |progress| table::table(&table::PLANS, progress))?;
             out::unless_closed(args.report.show(&table))?;
             return Ok(ExitCode::SUCCESS);
         }

@@ -42,7 +42,6 @@ enum Wish {
 enum Plan {
     /// The first grip, as a part of what holds the box.
     Grip(f64),
-    /// The grip times this.
     Change(f64),
     Open,
 }

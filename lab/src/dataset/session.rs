@@ -36,7 +36,6 @@ pub struct Session {
     pub stiffness_n_per_mm: f64,
     /// Noise of a reading, rms, mV.
     pub noise_mv: f64,
-    /// The other numbers of its scenes.
     pub others: Vec<Number>,
 }
 
@@ -76,7 +75,6 @@ impl Session {
         Self { name, split, material, seed, specimen, mu_s, mu_d, stiffness_n_per_mm, noise_mv, others }
     }
 
-    /// The numbers of its scenes.
     pub fn numbers(&self) -> impl Iterator<Item = Number> {
         let own = [
             ("contact.mu_s", self.mu_s),

@@ -113,7 +113,6 @@ fn disturb(scene: &mut Table, rng: &mut ChaCha8Rng) {
     scene.insert("swing".to_owned(), Value::Array(swings));
 }
 
-/// An entry of a scene's list.
 pub fn entry(keys: &[(&str, f64)]) -> Table {
     keys.iter().map(|&(key, value)| (key.to_owned(), Value::from(value))).collect()
 }

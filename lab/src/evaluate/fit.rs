@@ -23,7 +23,6 @@ use super::emg::score::Count;
 use super::emg::trial::{Kind, Trial, Trials};
 use super::emg::{self, Recordings, Score, person};
 
-/// A person's trials, and what the electrodes say in each.
 struct Wearer<'a> {
     number: u32,
     days: &'a Days,
@@ -94,7 +93,6 @@ pub struct Report {
     pub cost: [f64; 2],
     /// Each person with constants that were fitted to the others, from round figures.
     pub held_one: emg::Report,
-    /// The file, `logic/src/emg/fitted.rs`.
     pub file: String,
 }
 
@@ -198,7 +196,6 @@ pub fn fit(folder: &Path, rounds: u32, seed: u64, part: &(dyn Fn(f64) + Sync)) -
     Ok(Report { cost, held_one, file })
 }
 
-/// A row of the model card.
 fn row(name: &str, score: Option<Score>, interval: Option<Interval>) -> String {
     let (Some(score), Some(Interval { low, high })) = (score, interval) else { return String::new() };
     let of = |what: &str, value: fn(&Score) -> f64| {

@@ -22,7 +22,6 @@ const OFF_HZ: f64 = 0.5;
 /// A change of a number of a scene file: where (`contact.mu_s`, `move.0.at_s`), and to what.
 pub type Change = (&'static str, f64);
 
-/// A fingertip and the object that it practises on.
 #[derive(Clone, Debug)]
 pub struct Finger {
     /// Seed of its making: where films and gauges lie, their gains, signs, offsets.

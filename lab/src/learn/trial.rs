@@ -13,8 +13,7 @@ use tenax_sim::report::fate;
 use tenax_sim::scorer::{Card, Doing, Outcome, Stretch, Verdict, outcome};
 
 const SCENE: &str = "pick-up-trial";
-/// When its arm begins to lift, at the earliest, s. Chance adds up to six of the camera's images, so that no image has a
-/// favourite instant.
+/// When its arm begins to lift, at the earliest, s. Chance adds up to six of the camera's images, so that no image has a favourite instant.
 const LIFT_S: f64 = 1.2;
 const LATER_S: f64 = 0.2;
 
@@ -65,12 +64,10 @@ impl Word {
     }
 }
 
-/// A trial that was run: what the fingertip said in every tick, and what was true.
 #[derive(Clone, Debug, Default)]
 pub struct Trial {
     pub lift_s: f64,
     pub outputs: Vec<[i8; 2]>,
-    /// Whether that meant slip, and whether it was warned of.
     pub said: Vec<Said>,
     pub truth: Truth,
 }
@@ -84,7 +81,6 @@ impl Trial {
         self.truth.slips.iter().filter(|slip| !slip.meant && slip.macro_onset_s > self.lift_s)
     }
 
-    /// The slip up, if there was one.
     pub fn slip_up(&self) -> Option<Slip> {
         self.slips_since_lift().next().copied()
     }
@@ -97,7 +93,6 @@ impl Trial {
         Some([up, down])
     }
 
-    /// The stretches in which the network said this.
     pub fn verdicts(&self, word: Word) -> Vec<Verdict> {
         let mut all: Vec<Verdict> = Vec::new();
         for (tick, &said) in self.said.iter().enumerate() {

@@ -133,7 +133,6 @@ pub fn sequence(recording: &Recording, recipe: &Recipe) -> Sequence {
     }
 }
 
-/// A transform of one of the firmware's lengths.
 trait Spectrum {
     fn push(&mut self, sum: i32);
     fn powers(&self) -> [f32; BINS];
@@ -151,10 +150,8 @@ impl<const SUMS: usize> Spectrum for SlidingSpectrum<SUMS> {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// The diagonal of the covariance.
     Variance,
     Covariance,
-    /// The spectrum of the sum.
     Bin,
     Structure,
 }

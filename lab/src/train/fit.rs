@@ -20,7 +20,6 @@ pub struct Candidate {
     pub shyness: f32,
     /// Penalty of a squared weight of the logistic regression, a row.
     pub ridge: f64,
-    /// Whether the network begins as the logistic regression.
     pub warm: bool,
     /// Passes over the data that the learning rate is spread over.
     pub epochs: usize,

@@ -80,7 +80,6 @@ impl Quantised {
     }
 }
 
-/// The same network with its first layer's units scaled.
 fn equalised(network: &Network) -> Network {
     let mut network = network.clone();
     for unit in 0..H1 {

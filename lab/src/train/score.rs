@@ -25,11 +25,9 @@ impl Judged {
     }
 }
 
-/// What a threshold is chosen by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Aim {
-    /// The mean of sensitivity and specificity.
     Balanced,
     /// The same in pours, with few false steps.
     Pours,

@@ -48,7 +48,6 @@ impl Serialize for Mean {
     }
 }
 
-/// The root of a mean of squares.
 fn root<S: Serializer>(squares: &Mean, to: S) -> Result<S::Ok, S::Error> {
     squares.value().map(f64::sqrt).serialize(to)
 }

@@ -1,9 +1,7 @@
-//! `tenax chart table`: its keys, its intervals, its costs. Seeds are in the plans.
+//! `tenax chart table`: its keys, its intervals. Seeds are in the plans.
 
 use serde_json::Value;
-use tenax_lab::chart::table::costs::Costs;
 use tenax_lab::chart::table::heard::Plan;
-use tenax_lab::chart::table::rivals::rows;
 use tenax_lab::chart::table::table;
 
 const fn plan(seed: u64) -> Plan {
@@ -12,22 +10,13 @@ const fn plan(seed: u64) -> Plan {
 
 #[test]
 fn every_row_has_the_keys_and_the_same_slips_and_its_intervals_bracket() {
-    let costs = Costs([("s1", 10.0), ("s2", 5.0)].into_iter().collect());
-    let table = table(&[plan(1), plan(2), plan(3)], &costs, &|_| {}).unwrap();
+    let table = table(&[plan(1), plan(2), plan(3)], &|_| {}).unwrap();
     assert!(table.slips_1mm > 5, "{}", table.slips_1mm);
     let Value::Array(rows) = serde_json::to_value(&table).unwrap()["rows"].take() else { panic!("no rows") };
-    let keys = "name recall_1mm latency_ms_p50 latency_ms_p95 quiet disturbed slipping ns times_s1";
+    let keys = "name recall_1mm latency_ms_p50 latency_ms_p95 quiet disturbed slipping";
     for row in &rows {
         let has = |key: &str| row.get(key).is_some();
         assert!(keys.split_whitespace().all(has), "{row}");
-        // Parts add up; a row without a figure of one part has none.
-        let ns = match row["name"].as_str() {
-            Some("s1") => Some(10.0),
-            Some("s2") => Some(5.0),
-            Some("s1 or s2") => Some(15.0),
-            _ => None,
-        };
-        assert_eq!((row["ns"].as_f64(), row["times_s1"].as_f64()), (ns, ns.map(|ns| ns / 10.0)), "{row}");
         let between = |key: &str| [0, 1, 2].map(|n| row[key][n].as_f64().unwrap());
         for key in ["recall_1mm", "quiet", "disturbed"] {
             let [value, low, high] = between(key);
@@ -43,11 +32,4 @@ fn every_row_has_the_keys_and_the_same_slips_and_its_intervals_bracket() {
     // Whoever adds a detector misses no slip more.
     assert!(recall("s1 or mlp") >= recall("s1").max(recall("mlp")));
     assert!(recall("the hand: any of four") >= recall("s1 or hebbian"));
-}
-
-#[test]
-fn every_part_of_a_row_has_a_processor_time() {
-    let costs = Costs::measured().unwrap();
-    println!("ns a frame: {:.1?}", costs.0);
-    assert!(rows().iter().all(|row| costs.of(row.parts).is_some_and(|ns| ns > 0.0)));
 }

@@ -1,7 +1,5 @@
-//! Frames of a fingertip's serial line: [`link`] receives and sends them, [`record`] and [`play`] keep them, [`serve`] gives a board's
-//! line to other programs.
-//!
-//! The boards of `tenax-sim` and the commands of `tenax-line` both use it; [`tool`] is what their command lines share.
+//! Frames of a fingertip's serial line: [`link`] receives and sends them, [`record`] and [`play`] keep them, [`serve`] gives a board's line
+//! to other programs. The boards of `tenax-sim` and the commands of `tenax-line` both use it; [`tool`] is what their command lines share.
 #![forbid(unsafe_code)]
 
 pub mod link;

@@ -58,7 +58,6 @@ pub fn message(fields: &Fields) -> Vec<u8> {
     out
 }
 
-/// The first field of a message, which is of bytes.
 pub fn first_bytes(message: &[u8]) -> Option<&[u8]> {
     let mut rest = message.strip_prefix(&[(1 << 3 | BYTES) as u8])?;
     let (mut length, mut shift) = (0, 0);

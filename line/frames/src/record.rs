@@ -1,8 +1,6 @@
-//! Recordings of a board's line: MCAP for Foxglove, PlotJuggler and Python, and CSV with the same values.
-//!
-//! The topic `/line` holds the bytes as they came; all other topics are made from them. A message's log time is the board's,
-//! counted from this computer's clock at the beginning; its publish time is this computer's. The metadata `tenax` names tool,
-//! chip, build, schema and settings.
+//! Recordings of a board's line: MCAP for Foxglove, PlotJuggler and Python, and CSV with the same values. The topic `/line` holds the bytes
+//! as they came; all other topics are made from them. A message's log time is the board's, counted from this computer's clock at the
+//! beginning; its publish time is this computer's. The metadata `tenax` names tool, chip, build, schema and settings.
 
 pub mod csv;
 pub mod topics;

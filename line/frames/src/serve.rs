@@ -1,8 +1,6 @@
-//! A running board's line for other programs, live: on a pseudo-terminal and on TCP, as a real board's on its serial port.
-//!
-//! Every client gets each frame that comes up the line; what clients send goes down it frame by frame. All see the answers to all
-//! commands. The run never waits: a client that does not keep up loses whole messages, which are counted, and shows gaps in
-//! their numbers.
+//! A running board's line for other programs, live: on a pseudo-terminal and on TCP, as a real board's on its serial port. Every client
+//! gets each frame that comes up the line; what clients send goes down it frame by frame. All see the answers to all commands. The run
+//! never waits: a client that does not keep up loses whole messages, which are counted, and shows gaps in their numbers.
 
 mod hub;
 #[cfg(unix)]

@@ -1,5 +1,4 @@
 //! The true state of a served scene: lines of JSON on a TCP port of its own.
-//!
 //! The first line lists what can be done at the scene's bench. Lines that are sent back, such as `g`, are done there: no message of the
 //! board's line can say them, so that no page grips with a real hand.
 

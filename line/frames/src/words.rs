@@ -19,7 +19,6 @@ fn stamp(frame: u32) -> String {
     format!("{:10.4} s", seconds(frame))
 }
 
-/// Names of detectors, separated by blanks.
 pub fn names(set: DetectorSet) -> String {
     let names: Vec<&str> =
         DetectorId::ALL.iter().filter(|id| set.contains(**id)).map(|id| id.name()).collect();
@@ -94,7 +93,6 @@ pub fn answer_words(command: &Down, answer: &Answer) -> String {
     }
 }
 
-/// A refusal, and what to do about it.
 pub fn refusal_words(refusal: &Refusal) -> String {
     let text = match refusal {
         Refusal::OutOfRange { min, max } => return format!("it has to be {min} to {max}"),

@@ -44,9 +44,8 @@ pub struct Args {
     /// Let the page change settings, zero and calibrate [default: it only watches]
     #[arg(long, conflicts_with = "plain")]
     control: bool,
-    /// Send this command and print the board's answer; may be given more than once: ping, samples (of every channel), network
-    /// (weights and activations), zero (the unloaded force sensor), save or forget (the weights), calibrate-emg. With --plain, watching goes
-    /// on
+    /// Send this command and print the board's answer; may be given more than once: ping, samples (of every channel), network (weights and
+    /// activations), zero (the unloaded force sensor), save or forget (the weights), calibrate-emg. With --plain, watching goes on
     #[arg(long, value_name = "COMMAND", value_parser = send)]
     send: Vec<Down>,
 }

@@ -1,5 +1,4 @@
 //! Tests every sensor's wire: at rest each has its level, and what is touched is what moves.
-//!
 //! A prompt begins with the verb and the channel's name: it can be piped to a served scene's bench.
 
 use std::time::{Duration, Instant};
@@ -62,9 +61,7 @@ pub enum Verdict {
     /// It does not stand where its kind does.
     Off(f64),
     Silent,
-    /// This channel moved in its place.
     Moved(usize),
-    /// This channel reads the same.
     Bridged(usize),
 }
 
@@ -390,7 +387,6 @@ impl Selftest {
         moved > 0.0 && apart < ALIKE * moved && self.moved(&row, other) < 1.0
     }
 
-    /// A line for each fault, and the count.
     fn summary(&self) -> Vec<String> {
         let mut lines = vec![String::new()];
         let passes = |channel: usize| matches!(self.verdicts[channel], Some(Verdict::Pass(_)));

@@ -36,7 +36,6 @@ pub struct View {
     pub counts: Counts,
     about: Option<About>,
     settings: BTreeMap<u8, i32>,
-    /// Lost channels and capabilities, each with its words.
     faults: BTreeMap<String, String>,
     selftest: Option<Selftest>,
 }
@@ -53,7 +52,6 @@ impl View {
         &self.state
     }
 
-    /// Adds a page: the state, then its changes.
     pub fn join(&mut self) -> Receiver<Value> {
         let (page, changes) = sync_channel(CHANGES);
         let mut state = self.state.clone();
@@ -268,7 +266,6 @@ impl View {
         Ok(())
     }
 
-    /// Tells the pages what the self-test asks, reads and has found.
     fn tell_selftest(&mut self) {
         let state = self.selftest.as_ref().map(|test| {
             let result = |&channel: &usize| {

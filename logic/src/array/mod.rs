@@ -1,5 +1,4 @@
-//! Slip from ten elements that measure normal force only (Bamshad 2023): features, a small network, a verdict
-//! with hysteresis.
+//! Slip from ten elements that measure normal force only (Bamshad 2023): features, a small network, a verdict with hysteresis.
 //!
 //! | step | exact on every machine because | range |
 //! |---|---|---|

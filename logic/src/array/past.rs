@@ -63,8 +63,7 @@ impl Past {
         arrival
     }
 
-    /// Change of each element over `lag` slow frames, clamped to 1..=[`LAG_MAX`] (Bamshad 2023, equation 1:
-    /// 1).
+    /// Change of each element over `lag` slow frames, clamped to 1..=[`LAG_MAX`] (Bamshad 2023, equation 1: 1).
     #[inline]
     pub fn changes(&self, lag: usize) -> Changes {
         let lag = lag.clamp(1, LAG_MAX);

@@ -7,10 +7,9 @@ use super::spectrum::SlidingSpectrum;
 use super::structure::{self, Structure, WINDOWS};
 use super::{COVARIANCE_WINDOW, COVARIANCES, FEATURES, PAPER_FEATURES, Reading, SPECTRUM_WINDOW};
 
-/// 55 covariances, row by row of the upper triangle, then 21 spectral bins, then 36 sums of structure
-/// functions, lag by lag, the newest window first, one of them as its quiet level. Each is a logarithm, Q9:
-/// `sign(c) log2(1 + |c| / knee)` of a covariance (within +-2^14), `log2(1 + p / knee)` of a bin's power
-/// (0..2^15), `log2(1 + s / (knee frames))` of a sum over so many frames (0..2^14).
+/// 55 covariances, row by row of the upper triangle, then 21 spectral bins, then 36 sums of structure functions, lag by lag, the newest
+/// window first, one of them as its quiet level. Each is a logarithm, Q9: `sign(c) log2(1 + |c| / knee)` of a covariance (within +-2^14),
+/// `log2(1 + p / knee)` of a bin's power (0..2^15), `log2(1 + s / (knee frames))` of a sum over so many frames (0..2^14).
 pub type Features = [i16; FEATURES];
 
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,8 +1,6 @@
-//! Structure functions of the elements' forces: the mean square of a change over a lag (Kolmogorov 1941),
-//! without the change that all elements share: `n sum(q^2) - (sum q)^2` of the `n` changes `q`.
-//!
-//! Sliding renews contacts over a fixed distance, so the lag at which the function stops rising tells the
-//! speed. The shortest lag's oldest window holds the quiet level. (Ours; not in the paper.)
+//! Structure functions of the elements' forces: the mean square of a change over a lag (Kolmogorov 1941), without the change that all
+//! elements share: `n sum(q^2) - (sum q)^2` of the `n` changes `q`. Sliding renews contacts over a fixed distance, so the lag at which the
+//! function stops rising tells the speed. The shortest lag's oldest window holds the quiet level. (Ours; not in the paper.)
 
 use core::ops::Range;
 

@@ -1,5 +1,4 @@
-//! Holding: closes a little whenever the object slips (FingerVision 2017, section II-B). Motion without shear
-//! is a fault of the camera.
+//! Holding: closes a little whenever the object slips (FingerVision 2017, section II-B). Motion without shear is a fault of the camera.
 
 use super::felt::skin_mn;
 use super::{BehaviourConfig, Course, Felt, Movement, Wish};

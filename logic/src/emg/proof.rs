@@ -16,8 +16,7 @@ const LEAST_HEARD: i32 = 123;
 const HEARD_FRAMES: u16 = 120;
 /// Slow frames in a row that make a rise: one is a glitch.
 const HEARD_FOR: u8 = 2;
-/// Gradual rise: at most [`MOST_IN_BLOCK`] of it in a block, per mille, and at least [`PART_OF_BLOCK`] in
-/// [`BLOCKS_OF_RISE`] blocks.
+/// Gradual rise: at most [`MOST_IN_BLOCK`] of it in a block, per mille, and at least [`PART_OF_BLOCK`] in [`BLOCKS_OF_RISE`] blocks.
 const MOST_IN_BLOCK: i32 = 650;
 const PART_OF_BLOCK: i32 = 100;
 const BLOCKS_OF_RISE: usize = 3;

@@ -94,8 +94,7 @@ impl Fingertip {
     }
 
     fn consents_to(&self, command: &Down) -> Result<(), Refusal> {
-        // Trusting the line, or declaring that there is no wearer, needs consent by muscles or button, not by
-        // power-up.
+        // Trusting the line, or declaring that there is no wearer, needs consent by muscles or button, not by power-up.
         let for_ever = matches!(*command, Down::Set(Setting { id, .. })
             if [SettingId::LineTrusted.number(), SettingId::NoWearer.number()].contains(&id));
         let consents = match self.line() {

@@ -66,8 +66,7 @@ impl Fingertip {
         self.senses.gate.is_active()
     }
 
-    /// A muscle with a healthy myosensor is active, or the button opens the hand. A lost myosensor counts as
-    /// active, but renews nothing.
+    /// A muscle with a healthy myosensor is active, or the button opens the hand. A lost myosensor counts as active, but renews nothing.
     pub fn wearer_renews(&self) -> bool {
         let gate = &self.senses.gate;
         gate.is_active() && (gate.is_known() || gate.is_releasing() || self.senses.muscles().is_heard())

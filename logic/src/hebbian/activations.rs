@@ -1,5 +1,4 @@
-//! Activations of the tactile nodes: readings over their maximum (Tada 2006, section II.C), without the sign of
-//! a vibration.
+//! Activations of the tactile nodes: readings over their maximum (Tada 2006, section II.C), without the sign of a vibration.
 
 use dsp_fixedpoint::Q32;
 

@@ -350,8 +350,7 @@ fn output(sum: i64) -> Output {
 
 const AHEAD_MAX: i16 = 2_000;
 
-/// Lessons of each code less those of its opposite: Hebb's rule lets a constant input learn whichever code was
-/// taught longer.
+/// Lessons of each code less those of its opposite: Hebb's rule lets a constant input learn whichever code was taught longer.
 #[derive(Clone, Copy, Debug, Default)]
 struct Balance([i16; NETWORK_OUTPUTS]);
 

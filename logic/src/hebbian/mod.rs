@@ -1,6 +1,5 @@
-//! The Hebbian network, which learns slip from a camera (Tada 2006, equations 1 to 6; limits in
-//! `docs/hebbian.md`), in integers: tactile nodes t_j ([`activations`]), weights w_ij ([`network`]), outputs
-//! o_i, codes v_i ([`teacher`]).
+//! The Hebbian network, which learns slip from a camera (Tada 2006, equations 1 to 6; limits in `docs/hebbian.md`), in integers: tactile
+//! nodes t_j ([`activations`]), weights w_ij ([`network`]), outputs o_i, codes v_i ([`teacher`]).
 //!
 //! ```text
 //! o_i   = f(sum_j t_j w_ij + v_i)                            (3), f clips at +-1 (4)

@@ -1,6 +1,5 @@
-//! The camera as a teacher (Tada 2006, equations 1 and 2). There is a lesson only while the finger holds
-//! something undisturbed, and fresh codes agree that something moves. Codes chatter (section III.B), so each is
-//! the median of the last three messages.
+//! The camera as a teacher (Tada 2006, equations 1 and 2). There is a lesson only while the finger holds something undisturbed, and fresh
+//! codes agree that something moves. Codes chatter (section III.B), so each is the median of the last three messages.
 
 use tenax_hal_shim::words::{Code, Codes, NoLesson};
 

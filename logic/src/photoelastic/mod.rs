@@ -93,8 +93,7 @@ impl Head {
         self.swing(config).map_or(0, |(part, period_q4, force_mn)| fit.rate_um_s(part, period_q4, force_mn))
     }
 
-    /// Forces in place of a lost force sensor: Fn is the least that fits the light and the load the most. Shear
-    /// is 0 and the ratio None.
+    /// Forces in place of a lost force sensor: Fn is the least that fits the light and the load the most. Shear is 0 and the ratio None.
     pub fn stand_in(&self) -> Option<Forces> {
         let Force { least_mn, most_mn } = self.force()?;
         Some(Forces { fn_mn: least_mn, fx_mn: 0, fy_mn: 0, ft_mn: 0, load_mn: most_mn, ratio_permille: None })

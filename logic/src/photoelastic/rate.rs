@@ -34,7 +34,7 @@ fn exp2(x: i32) -> i32 {
 
 impl RateFit {
     /// log2, Q10, of amplitude (part of the span, Q20), period (1/16 frames, as mHz) and force (mN).
-    pub fn features(amplitude_q20: i32, period_q4: u16, force_mn: i32) -> [i32; 3] {
+    fn features(amplitude_q20: i32, period_q4: u16, force_mn: i32) -> [i32; 3] {
         // 2000 frames a second in 1/16: 32 000 000 mHz over the period. A quarter of it has room.
         let quarter_mhz = 8_000_000 / i32::from(period_q4.max(1));
         [log2(amplitude_q20), log2(quarter_mhz) + (2 << LEVEL_Q), log2(force_mn)]

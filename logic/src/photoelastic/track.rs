@@ -1,7 +1,6 @@
-//! Range of forces that fits the light for any shear. With a shear of q times the force and `s^2 = 1 + 4 q^2`
-//! the light is `sin^2(s phase) / s^2` of the peak's (Dubey 2006, equations 6 to 9), q at most
-//! [`SHEAR_MAX_PERMILLE`]. While the light stays below [`FOLD`] the branch is still the same; after brighter
-//! light the range is that of both. The branch is known again in an open hand, or by another sensor.
+//! Range of forces that fits the light for any shear. With a shear of q times the force and `s^2 = 1 + 4 q^2` the light is `sin^2(s phase)
+//! / s^2` of the peak's (Dubey 2006, equations 6 to 9), q at most [`SHEAR_MAX_PERMILLE`]. While the light stays below [`FOLD`] the branch
+//! is still the same; after brighter light the range is that of both. The branch is known again in an open hand, or by another sensor.
 
 use super::curve::{Curve, HALF_TURN, ONE, phase_of};
 

@@ -61,8 +61,7 @@ impl Survey {
         survey
     }
 
-    /// Place of the next record. Only a record that checks out is skipped by its length: a half programmed tag may
-    /// name any.
+    /// Place of the next record. Only a record that checks out is skipped by its length: a half programmed tag may name any.
     fn look_at(&mut self, area: &impl FlashArea, at: usize) -> usize {
         let word = area.read(self.sector, at);
         if word == BLANK {

@@ -1,8 +1,6 @@
-//! A scene that says only how it differs from another: `base = "glass"`.
-//!
-//! A table of the scene changes the keys that it names, an entry of a list (`[[knock]]`) comes after those of the base, and
-//! `without = ["knock"]` takes a table or list of the base away first. `name` and `title` are never the base's. A base may
-//! itself have one.
+//! A scene that says only how it differs from another: `base = "glass"`. A table of the scene changes the keys that it names, an entry of a
+//! list (`[[knock]]`) comes after those of the base, and `without = ["knock"]` takes a table or list of the base away first. `name` and
+//! `title` are never the base's. A base may itself have one.
 //!
 //! What neither says is in `defaults.toml`. All texts stand one after the other in one space of bytes, so that a span tells the file as
 //! well.
@@ -30,7 +28,6 @@ struct Source {
     start: usize,
 }
 
-/// The scene, its bases, and the defaults.
 pub(super) struct Sources(Vec<Source>);
 
 impl Sources {

@@ -25,7 +25,6 @@ use sections::{
     Sweep, Swing, Table, Vibrator, Wet,
 };
 
-/// An error of a scene file, in one line.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{file}:{line}: {what}")]
 pub struct SceneError {

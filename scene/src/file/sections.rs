@@ -1,5 +1,4 @@
 //! One struct for each kind of table of a scene file.
-//!
 //! `docs/scenes.md` explains every key; `defaults.toml` has the defaults with their sources.
 
 use std::num::NonZeroU8;

@@ -50,7 +50,6 @@ pub(super) fn step(scene: &SceneFile) -> Checked {
 }
 
 /// The longest stable step of semi-implicit Euler on an oscillator, s: `(sqrt(c^2 + 4 k m) - c) / k`, which is `2 / omega` undamped.
-///
 /// From Jury's test of `z^2 - (2 - k dt^2/m - c dt/m) z + (1 - c dt/m)`, with damping at the old speed.
 fn oscillator_s(mass_kg: f64, stiffness_n_per_m: f64, damping_ns_per_m: f64) -> f64 {
     let square = damping_ns_per_m * damping_ns_per_m + 4.0 * stiffness_n_per_m * mass_kg;

@@ -46,11 +46,9 @@ pub struct Outcome {
     pub stuck_part: f64,
 }
 
-/// A patch of rings whose pressures are evenly spaced.
-///
-/// With `w = p / p0 = sqrt(1 - (r/a)^2)` a ring between `w1` and `w2` has the area part `w2^2 - w1^2` and the load part
-/// `w2^3 - w1^3`, both exact. Only the ring that the edge of the stick zone crosses is in error, of second order in 1/N, and the
-/// rings let go at evenly spaced displacements.
+/// A patch of rings whose pressures are evenly spaced. With `w = p / p0 = sqrt(1 - (r/a)^2)` a ring between `w1` and `w2` has the area part
+/// `w2^2 - w1^2` and the load part `w2^3 - w1^3`, both exact. Only the ring that the edge of the stick zone crosses is in error, of second
+/// order in 1/N, and the rings let go at evenly spaced displacements.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BrushPatch {
     pad: Pad,
@@ -74,7 +72,6 @@ impl BrushPatch {
     }
 
     /// Goes on by a displacement of `by_m` of the object over the pad, pressed with `normal_n`.
-    ///
     /// Each element holds until it carries `mu_s` of its load, drops to `mu_d` and slides there until the motion stops or
     /// turns. It is exact at any step in which the direction does not change.
     pub fn step(&mut self, normal_n: f64, friction: Friction, by_m: f64) -> Outcome {
@@ -145,11 +142,9 @@ impl Patch {
         self.brush.energy_j()
     }
 
-    /// Moves a mass on `pads` like this one; see [`super::level::Level::step`].
-    ///
-    /// Backward Euler over what sticks: `m v = m v_free - dt (Q + K v dt + K tau v)`. Each term takes energy or moves it
-    /// between mass and bristles, so none grows, at any step and stiffness. What slides pulls with the shear that it has;
-    /// when the mass turns round, all of it sticks again and is a spring too.
+    /// Moves a mass on `pads` like this one; see [`super::level::Level::step`]. Backward Euler over what sticks: `m v = m v_free - dt (Q +
+    /// K v dt + K tau v)`. Each term takes energy or moves it between mass and bristles, so none grows, at any step and stiffness. What
+    /// slides pulls with the shear that it has; when the mass turns round, all of it sticks again and is a spring too.
     pub(super) fn step(&mut self, push: level::Push, dt_s: f64) -> level::Outcome {
         let level::Push { normal_n, pads, friction, mass_kg, free_m_s } = push;
         // The pad's last shear, limited by this step's load.

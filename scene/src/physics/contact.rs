@@ -1,7 +1,5 @@
-//! L0: rigid Coulomb friction. Sticks while |Q| <= mu_s P, slides at mu_d P.
-//!
-//! The step is Moreau's: friction is the impulse that would stop the motion, limited to `mu P dt`. It is stable at any step, and it
-//! sticks exactly: the speed is 0.0, so nothing creeps.
+//! L0: rigid Coulomb friction. Sticks while |Q| <= mu_s P, slides at mu_d P. The step is Moreau's: friction is the impulse that would stop
+//! the motion, limited to `mu P dt`. It is stable at any step, and it sticks exactly: the speed is 0.0, so nothing creeps.
 
 use super::friction::Friction;
 

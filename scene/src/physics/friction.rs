@@ -3,7 +3,6 @@
 use crate::file::sections::{Contact, Wet};
 use crate::schedule::{Span, smooth};
 
-/// Coulomb's two coefficients at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Friction {
     pub mu_s: f64,
@@ -15,9 +14,8 @@ pub struct Friction {
 const SLOWEST_M_S: f64 = 1e-3;
 
 impl Friction {
-    /// Rise of `mu_d` at `speed_m_s` where friction rises by `per_decade` of it with each tenfold speed:
-    /// `mu_d k log10(1 + v / v_0)`, as rubber's does below its peak (Grosch 1963; that it is a straight line over the
-    /// logarithm is assumed).
+    /// Rise of `mu_d` at `speed_m_s` where friction rises by `per_decade` of it with each tenfold speed: `mu_d k log10(1 + v / v_0)`, as
+    /// rubber's does below its peak (Grosch 1963; that it is a straight line over the logarithm is assumed).
     pub fn rise(self, per_decade: f64, speed_m_s: f64) -> f64 {
         self.mu_d * per_decade * libm::log10(1.0 + speed_m_s / SLOWEST_M_S)
     }

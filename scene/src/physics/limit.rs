@@ -3,7 +3,6 @@
 use crate::file::sections::Object;
 
 /// Width and stiffness between the fingers, and the force at which they give way.
-///
 /// Crushing is ideally plastic: the wall yields at its limit and keeps the dent, so no finger ever presses harder than
 /// the limit while there is something left to crush. Breaking is an instant after which the object is no more.
 #[derive(Clone, Debug)]

@@ -10,10 +10,9 @@ pub const TORSION: f64 = 3.0 * std::f64::consts::PI / 16.0;
 
 /// A pendulum with dry friction at its pivot: `I w' = m g (x cos - h sin) - M`, I = m r^2.
 ///
-/// Shear and torsion share one friction: `(Q / Q_max)^2 + (M / M_max)^2 <= 1` (Howe and Cutkosky 1996, the ellipsoid).
-/// While the pad sticks each has what the other leaves. What slides pulls against its own direction, and the skin needs
-/// some way to lean into a new one: an object that turns loses its friction along the pad over that way and sinks, the
-/// more slowly the faster it turns.
+/// Shear and torsion share one friction: `(Q / Q_max)^2 + (M / M_max)^2 <= 1` (Howe and Cutkosky 1996, the ellipsoid). While the pad sticks
+/// each has what the other leaves. What slides pulls against its own direction, and the skin needs some way to lean into a new one: an
+/// object that turns loses its friction along the pad over that way and sinks, the more slowly the faster it turns.
 #[derive(Clone, Debug)]
 pub struct Pitch {
     offset_m: f64,

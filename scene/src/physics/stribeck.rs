@@ -1,7 +1,5 @@
-//! Friction that falls with speed, under a mass on a spring.
-//!
-//! The mass vibrates by itself exactly when `c + P dmu/dv < 0` at the sliding speed. That vibration is the continuous signal of the
-//! photoelastic sensor (Dubey 2006, section 3).
+//! Friction that falls with speed, under a mass on a spring. The mass vibrates by itself exactly when `c + P dmu/dv < 0` at the sliding
+//! speed. That vibration is the continuous signal of the photoelastic sensor (Dubey 2006, section 3).
 
 use super::GRAVITY_M_S2;
 
@@ -35,7 +33,6 @@ pub struct Slider {
 
 impl Slider {
     /// The longest inner step that keeps the growth rate within 1 % and the frequency within 0.2 %, s.
-    ///
     /// The step multiplies an amplitude by `sqrt(1 - D)` with `D = dt (c + P dmu/dv) / m`, which is exp(growth dt) but
     /// for a part `D/2`, and has the frequency `omega (1 + (omega dt)^2 / 24)`. Both are held at the steepest slope.
     fn inner_step_s(&self, normal_n: f64) -> f64 {
@@ -67,10 +64,8 @@ impl StribeckSlider {
         self
     }
 
-    /// Goes on by `dt_s` over a surface that moves at `surface_m_s`, pressed with `normal_n`.
-    ///
-    /// Inside, a Moreau step with mu taken at the speed before it; as many as the accuracy needs. It sticks exactly:
-    /// the slider then has the speed of the surface, not nearly.
+    /// Goes on by `dt_s` over a surface that moves at `surface_m_s`, pressed with `normal_n`. Inside, a Moreau step with mu taken at the
+    /// speed before it; as many as the accuracy needs. It sticks exactly: the slider then has the speed of the surface, not nearly.
     pub fn step(&mut self, normal_n: f64, surface_m_s: f64, dt_s: f64) {
         let normal_n = normal_n.max(0.0);
         let count = (dt_s / self.slider.inner_step_s(normal_n)).ceil().clamp(1.0, INNER_STEPS_MAX);

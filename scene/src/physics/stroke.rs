@@ -7,10 +7,8 @@ use crate::file::SceneFile;
 use crate::file::sections::Robot;
 use crate::schedule::{STEP_S, Span, smooth};
 
-/// The fingertip on a carriage: pressed with a set load, pulled along through the arm's compliance.
-///
-/// `m v' = k (x_carriage - x) + c (v_carriage - v) - friction`. The arm is the spring that makes Ft/Fn climb to mu_s
-/// before anything slides, as in figure 7a.
+/// The fingertip on a carriage: pressed with a set load, pulled along through the arm's compliance. `m v' = k (x_carriage - x) + c
+/// (v_carriage - v) - friction`. The arm is the spring that makes Ft/Fn climb to mu_s before anything slides, as in figure 7a.
 #[derive(Clone, Debug)]
 pub struct Stroke {
     presses: Vec<(Span, f64)>,

@@ -4,10 +4,9 @@ use crate::file::sections::{Intent, Muscle};
 use crate::plant::Calibrated;
 use crate::schedule::Span;
 
-/// The wearer of every scene, as a calibration would have found them: at rest the myosensors' default tone, two firm
-/// contractions, of which the other electrode hears 5 %. Closing begins at 160 mV, and is as fast as the scenes' contractions
-/// say. Opening at once takes a fifth more than is calibrated, so clear contractions of 900 mV do it, and 600 mV of mains do
-/// not.
+/// The wearer of every scene, as a calibration would have found them: at rest the myosensors' default tone, two firm contractions, of which
+/// the other electrode hears 5 %. Closing begins at 160 mV, and is as fast as the scenes' contractions say. Opening at once takes a fifth
+/// more than is calibrated, so clear contractions of 900 mV do it, and 600 mV of mains do not.
 const WEARER: Calibrated = Calibrated::Levels { rest_mv: [50, 50], close_mv: [900, 95], open_mv: [80, 560] };
 
 /// A person who contracts as the scene says, and lets go early once the hand grips as they wanted: they watch it.

@@ -42,7 +42,7 @@ fn smooth(t_s: f64, from_s: f64, to_s: f64) -> f64 {
 }
 
 impl Story {
-    pub(crate) fn drawn(noise: &mut Noise, speed: f64) -> Self {
+    pub(crate) fn drawn(noise: &mut Noise) -> Self {
         let side = noise.sign();
         let mut shear = || (noise.between(-3.0, 3.0), noise.between(-3.0, 3.0));
         let shears = [shear(), shear(), shear()];
@@ -55,9 +55,8 @@ impl Story {
             slides: [
                 (noise.between(-14.0, 14.0), noise.sign() * noise.between(6.0, 16.0)),
                 (noise.sign() * noise.between(6.0, 16.0), noise.between(-14.0, 14.0)),
-            ]
-            .map(|(x, y)| (x * speed, y * speed)),
-            turn_rad: noise.sign() * noise.between(0.2, 0.35) * speed,
+            ],
+            turn_rad: noise.sign() * noise.between(0.2, 0.35),
             hand_px: noise.between(20.0, 60.0),
             exposure: (noise.between(0.0, 0.06), noise.between(0.1, 0.5)),
         }

@@ -24,11 +24,9 @@ const EDGE_PART: f64 = 0.05;
 const WAVES: usize = 5;
 const WAVE_RATIO: f64 = 1.7;
 
-/// Ten shares of one load.
-///
-/// At rest an element carries more the nearer it is to the contact's middle. The weight on the pad tilts the load along it, torsion
-/// across the diagonal. Slip moves load between neighbours and mostly stays in the sum, so the covariance changes more than the
-/// spectrum of the sum, as the detector of Bamshad 2023 (section 4) expects. A knock and the gear press on all of it.
+/// Ten shares of one load. At rest an element carries more the nearer it is to the contact's middle. The weight on the pad tilts the load
+/// along it, torsion across the diagonal. Slip moves load between neighbours and mostly stays in the sum, so the covariance changes more
+/// than the spectrum of the sum, as the detector of Bamshad 2023 (section 4) expects. A knock and the gear press on all of it.
 #[derive(Debug)]
 pub(crate) struct Elements {
     parameters: Array,
@@ -237,7 +235,6 @@ mod tests {
     const STILL: Shakes = Shakes { t_s: 0.0, released_n: 0.0, motor_speed: 0.0 };
     const LETS_GO: Shakes = Shakes { released_n: 0.5, ..STILL };
 
-    /// A quiet array of a scene that is changed so.
     fn made(change: impl FnOnce(&mut SceneFile)) -> Elements {
         let (name, text) = crate::builtin()[0];
         let mut scene = SceneFile::parse(text, name).unwrap();

@@ -18,10 +18,8 @@ pub struct Seen {
     pub v2: i8,
 }
 
-/// Marks on whole pixels, two images.
-///
-/// One pixel is 1.32 mm, so what moves slowly crosses a pixel in some images and not in others: the words chatter, as in
-/// Tada 2006, figure 6 (a) and (b), and a slip is seen two images late.
+/// Marks on whole pixels, two images. One pixel is 1.32 mm, so what moves slowly crosses a pixel in some images and not in others: the
+/// words chatter, as in Tada 2006, figure 6 (a) and (b), and a slip is seen two images late.
 #[derive(Debug)]
 pub(crate) struct Eye {
     parameters: Camera,

@@ -25,8 +25,7 @@ const RANKS: [usize; COUNT] = {
     ranks
 };
 
-/// Adds the noise of one scan: of each conversion its own. What shares a switch shares a conversion, whichever of it is
-/// selected.
+/// Adds the noise of one scan: of each conversion its own. What shares a switch shares a conversion, whichever of it is selected.
 #[derive(Debug)]
 pub(crate) struct Converter(Noise);
 

@@ -5,10 +5,8 @@ use crate::random::Noise;
 /// Half of what a film covers, in pressure over its peak (assumed: a film a third as wide as the contact).
 const HALF_WIDTH: f64 = 0.15;
 
-/// A place in the contact.
-///
-/// Places are told apart by the pressure there over its peak, w, as the brush's rings are: 0 at the edge of the contact, 1
-/// in its middle; what lies outside w is the part `w^2` of the area and carries `w^3` of the load.
+/// A place in the contact. Places are told apart by the pressure there over its peak, w, as the brush's rings are: 0 at the edge of the
+/// contact, 1 in its middle; what lies outside w is the part `w^2` of the area and carries `w^3` of the load.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Place {
     low: f64,

@@ -18,8 +18,7 @@ const WIDE: usize = MARKERS / LONG;
 const SPACING_PART: f64 = 0.5;
 /// The soft layer spreads the load over so many radii (assumed, as for the normal-force array).
 const SPREADS: f64 = 1.4;
-/// The part of the picture in which the object lies, times the part of its points that have an edge to be seen moving
-/// (assumed).
+/// The part of the picture in which the object lies, times the part of its points that have an edge to be seen moving (assumed).
 const TEXTURE_PART: f64 = 0.02;
 const SLIPS_PX: f64 = 0.3;
 /// Range of the motion that is reported in a wrong picture, in 1/10,000 of it.

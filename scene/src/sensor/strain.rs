@@ -9,11 +9,9 @@ use crate::random::{Noise, Seeds, Source};
 use crate::schedule::FRAME_S;
 use crate::schedule::LowPass;
 
-/// Twelve foil gauges, half of them in each layer.
-///
-/// A gauge feels the normal pressure and the shear of its own place in some mixture, so some only ever read the grasping
-/// force and others the friction, with either sign (Tada 2006, figure 6 d and f). Where the contact slides, the shear of
-/// a place falls with the pressure there; where it sticks, it is that of the whole: the brush's two zones.
+/// Twelve foil gauges, half of them in each layer. A gauge feels the normal pressure and the shear of its own place in some mixture, so
+/// some only ever read the grasping force and others the friction, with either sign (Tada 2006, figure 6 d and f). Where the contact
+/// slides, the shear of a place falls with the pressure there; where it sticks, it is that of the whole: the brush's two zones.
 #[derive(Debug)]
 pub(crate) struct Gauges {
     noise_mv: f64,

@@ -11,7 +11,6 @@ pub fn parsed(text: &str) -> SceneFile {
     SceneFile::parse(text, "scene").unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// The built-in scene of this name.
 pub fn scene(name: &str) -> SceneFile {
     changed(name, &[])
 }
@@ -31,7 +30,6 @@ pub fn changed(name: &str, changes: &[(&str, &str)]) -> SceneFile {
 pub enum Reflex {
     /// Only the wearer's muscles and the scene's commands drive.
     None,
-    /// A short gentle close.
     Ratio,
 }
 

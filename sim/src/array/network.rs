@@ -15,7 +15,6 @@ use super::material::SEEN;
 use super::real::Logits;
 use crate::labelled::Step;
 
-/// The file in a folder of `tenax train`.
 pub const FILE: &str = "network.json";
 
 /// A network as `tenax train` writes it: the firmware's integers, what its features are made with, and on what noise it learned.
@@ -44,7 +43,6 @@ pub struct Network {
 }
 
 impl Network {
-    /// Differences in a covariance that can be judged.
     pub const WINDOWS: [usize; 1] = [COVARIANCE_WINDOW];
 
     pub fn shipped() -> Self {
@@ -76,7 +74,6 @@ impl Network {
         Ok(Self { model: Box::new(saved.model()?), noise_samples: saved.noise_samples })
     }
 
-    /// Confidence in each step of one recording.
     pub fn confidences(&self, steps: &[Step]) -> Confidences {
         let per_nat = self.model.judgement.logit_per_nat;
         let (logits, _) = self.judge(&super::readings(steps));

@@ -7,7 +7,6 @@ use super::{Verdicts, events};
 use crate::labelled::Recording;
 use crate::scorer::Card;
 
-/// Pours alone: the paper's task.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Pour {
     pub balanced: f64,

@@ -4,7 +4,6 @@
 use std::fmt;
 
 use tenax_hal_shim::channel::{FRAMES_PER_SLOW_FRAME, SCANS_PER_FRAME};
-use tenax_hal_shim::detector::DetectorSet;
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::motor::Duty;
 use tenax_hal_shim::schedule::{Job, slot_of};
@@ -22,7 +21,6 @@ pub struct Said {
     pub events: Vec<Event>,
     pub answers: Vec<Answer>,
     pub feedback: Vec<(u32, Duty)>,
-    pub slip_and_warning: Vec<[DetectorSet; 2]>,
 }
 
 impl Said {
@@ -70,8 +68,6 @@ pub fn host_decides(
                 said.feedback.push((sequence, duty));
             }
         }
-        let fingertip = &device.fingertip;
-        said.slip_and_warning.push([fingertip.slip(), fingertip.incipient()]);
         std::iter::from_fn(|| device.next_message()).for_each(|message| said.take(message));
     }
     said
@@ -91,10 +87,6 @@ pub struct Agreement {
 impl Agreement {
     /// Between a run, which must have lost no frame and not restarted, and the host's logic.
     pub fn of(run: &Run) -> Self {
-        Self::with_host(run).0
-    }
-
-    pub fn with_host(run: &Run) -> (Self, Said) {
         let host = host_says(run);
         let (slows, networks) = (run.slows.len(), run.networks().count());
         let ticks = slows * usize::from(FRAMES_PER_SLOW_FRAME);
@@ -108,7 +100,7 @@ impl Agreement {
                 compared += &format!(", {what}");
             }
         }
-        (Self { compared, difference: difference(run, &host) }, host)
+        Self { compared, difference: difference(run, &host) }
     }
 
     pub const fn holds(&self) -> bool {

@@ -64,8 +64,7 @@ pub struct Args {
     /// First calibrate the myosensors with these three recordings [default: not calibrated]
     #[arg(long, value_name = "REST.csv,CLOSE.csv,OPEN.csv", value_delimiter = ',', requires = "replay")]
     calibrate_emg: Option<Vec<PathBuf>>,
-    /// Also run the scene's controls on the PC: no reflex, a constant grip of the same mean force, each detector alone, all but
-    /// one
+    /// Also run the scene's controls on the PC: no reflex, a constant grip of the same mean force, each detector alone, all but one
     #[arg(long, conflicts_with = "replay")]
     controls: bool,
     /// Seed of every noise

@@ -54,7 +54,6 @@ pub fn figure(subject: &Subject, sketch: Sketch) -> Sheet {
     Sheet::new(subject.scene, subtitle, 1, panels)
 }
 
-/// A panel that shows at least a range, and all of its curves.
 fn panel(title: &str, series: Vec<Series>, at_least: (f64, f64), (from_s, to_s): (f64, f64)) -> Panel {
     let values = series.iter().flat_map(|own| &own.points).map(|point| point.1).filter(|y| y.is_finite());
     let (low, high) = values.fold(at_least, |(low, high), y| (low.min(y), high.max(y)));

@@ -57,7 +57,6 @@ struct About {
     doing: Doing,
 }
 
-/// A recording whose rows still come.
 struct Open {
     about: About,
     t_s: Vec<f64>,

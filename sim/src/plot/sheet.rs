@@ -61,14 +61,6 @@ impl Series {
     }
 }
 
-#[derive(Clone, Copy, Debug)]
-pub struct Cell {
-    pub x: (f64, f64),
-    pub y: (f64, f64),
-    /// None where it failed.
-    pub error: Option<f64>,
-}
-
 /// A rectangle behind the curves.
 #[derive(Clone, Copy, Debug)]
 pub struct Band {
@@ -82,15 +74,13 @@ pub struct Panel {
     pub title: String,
     pub x: Axis,
     pub y: Axis,
-    pub cells: Vec<Cell>,
     pub bands: Vec<Band>,
     pub series: Vec<Series>,
-    pub words: Vec<(f64, f64, String)>,
 }
 
 impl Panel {
     pub fn new(title: impl Into<String>, x: Axis, y: Axis, series: Vec<Series>) -> Self {
-        Self { title: title.into(), x, y, cells: Vec::new(), bands: Vec::new(), series, words: Vec::new() }
+        Self { title: title.into(), x, y, bands: Vec::new(), series }
     }
 }
 
@@ -100,7 +90,6 @@ pub struct Sheet {
     pub subtitle: String,
     pub columns: u32,
     pub panels: Vec<Panel>,
-    pub errors: Option<(f64, f64)>,
 }
 
 impl Sheet {
@@ -110,6 +99,6 @@ impl Sheet {
         columns: u32,
         panels: Vec<Panel>,
     ) -> Self {
-        Self { title: title.into(), subtitle: subtitle.into(), columns, panels, errors: None }
+        Self { title: title.into(), subtitle: subtitle.into(), columns, panels }
     }
 }

@@ -10,7 +10,6 @@ pub struct Thin {
     width_s: f64,
     kept: Vec<(f64, f64)>,
     at: usize,
-    /// The points of the column that is drawn now.
     column: Vec<(f64, f64)>,
 }
 

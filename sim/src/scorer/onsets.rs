@@ -1,5 +1,4 @@
 //! Exact onsets in a data set: one cell of a row holds the slips whose micro onset lies in that row's step.
-//!
 //! `micro/macro/end/mm`, in seconds with 6 places, joined by `;`. An empty macro onset is micro slip that came to nothing, an empty end
 //! is never, and a `!` behind the millimetres is a slip that was meant.
 
@@ -56,9 +55,8 @@ fn one(text: &str) -> Result<SlipSpan, String> {
     Ok(slip)
 }
 
-/// Slips of a recording that has labels and no onsets: each run of labelled steps, from the beginning of its first to the end
-/// of its last, with no micro slip before it. Two that are nearer than the time that a detection may take are one. The first
-/// step ends at `first_s`.
+/// Slips of a recording that has labels and no onsets: each run of labelled steps, from the beginning of its first to the end of its last,
+/// with no micro slip before it. Two that are nearer than the time that a detection may take are one. The first step ends at `first_s`.
 pub fn of_labels(labels: impl Iterator<Item = bool>, first_s: f64) -> Vec<SlipSpan> {
     let mut slips: Vec<SlipSpan> = Vec::new();
     for (n, _) in labels.enumerate().filter(|(_, slips)| *slips) {

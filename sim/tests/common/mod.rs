@@ -14,7 +14,6 @@ pub fn asked<N: FromStr>(name: &str) -> Option<N> {
     std::env::var(name).ok().and_then(|text| text.parse().ok())
 }
 
-/// A scene of the repository, or one of `tests/scenes/`.
 pub fn text(name: &str) -> String {
     let own = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/scenes/");
     let read = || std::fs::read_to_string(format!("{own}{name}.toml")).expect("a scene of these tests");

@@ -52,7 +52,6 @@ fn did_as_asked(run: &Run) -> bool {
     run.events.iter().any(|event| matches!(event.kind, EventKind::Behaviour(_, Some(Ending::Done))))
 }
 
-/// Stalled both ways, and freed each time.
 fn stalled(run: &Run) -> bool {
     let stalls = [MotorStop::ClosingStalled, MotorStop::OpeningStalled];
     stops(&run.events) == stalls.map(|stop| [Some(stop), None]).concat()

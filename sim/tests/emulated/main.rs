@@ -62,7 +62,6 @@ impl Swing {
         }
     }
 
-    /// Every pin at rest.
     fn at_rest(self) -> Self {
         Self { swings: false, ..self }
     }

@@ -87,7 +87,6 @@ impl Calibration {
         }
     }
 
-    /// Adds a candidate unless it is another view of one.
     fn add(&mut self, shape: Shape, quality: f32) {
         let near = |candidate: &Candidate| {
             candidate.marker.rest.at.distance(shape.at) < candidate.marker.rest.radius().max(shape.radius())

@@ -14,7 +14,6 @@ fn of(rectangles: &[(usize, usize, usize, usize)]) -> Mask {
     mask
 }
 
-/// About one pixel in `share`.
 fn random(state: &mut u32, share: u32) -> Mask {
     let mut mask = Mask::EMPTY;
     for at in 0..PIXELS {
@@ -26,7 +25,6 @@ fn random(state: &mut u32, share: u32) -> Mask {
     mask
 }
 
-/// Pixels of a mask within `reach` of each place.
 fn for_each_count(mask: &Mask, reach: usize, mut each: impl FnMut(usize, usize, usize)) {
     for (x, y) in (0..WIDTH).flat_map(|x| (0..HEIGHT).map(move |y| (x, y))) {
         let rows = y.saturating_sub(reach)..(y + reach + 1).min(HEIGHT);

@@ -23,9 +23,7 @@ type Levels = Box<[i16; PIXELS]>;
 
 #[derive(Clone, Debug)]
 pub struct Scene {
-    /// Red, green, blue.
     colours: [Levels; 3],
-    /// Variation of green.
     varies: Levels,
     frames: u32,
 }
@@ -123,7 +121,6 @@ fn apart(level: u8, old: i16) -> i16 {
     (((i16::from(level)) << FRACTION) - old).abs()
 }
 
-/// A running mean of the grey level.
 #[derive(Clone, Debug)]
 pub struct Running {
     mean: Levels,

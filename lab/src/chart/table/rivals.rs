@@ -20,8 +20,6 @@ const HELD: u32 = frames(50);
 #[derive(Clone)]
 pub struct Row {
     pub name: String,
-    /// Parts of its processor time.
-    pub parts: &'static [&'static str],
     /// A rival's thresholds, from which one is chosen on fingertips that are not scored.
     pub grid: Vec<i32>,
     pub threshold: Option<i32>,
@@ -103,8 +101,7 @@ pub fn logistic(own: Arc<Logistic>) -> Score {
 
 /// The rivals whose threshold is chosen. `linear` learned on all features, `paper` on those of the paper alone.
 pub fn rivals(linear: Logistic, paper: Logistic) -> Vec<Row> {
-    let rival =
-        |name: &str, parts, grid, make| Row { name: name.to_owned(), parts, grid, threshold: None, make };
+    let rival = |name: &str, grid, make| Row { name: name.to_owned(), grid, threshold: None, make };
     let learned = |own: Logistic| -> Make {
         let own = Arc::new(own);
         Arc::new(move |at| vec![above(at, logistic(Arc::clone(&own)))])
@@ -113,33 +110,32 @@ pub fn rivals(linear: Logistic, paper: Logistic) -> Vec<Row> {
     let ratios = (3..=24).map(|n| 50 * n).collect();
     let nats = || (-8..=40).map(|n| n * 64).collect();
     vec![
-        rival("vibration threshold", &["loudness"], levels, Arc::new(|at| vec![above(at, loudness())])),
-        rival("Ft/Fn threshold", &["ratio"], ratios, Arc::new(|at| vec![above(at, ratio())])),
-        rival("logistic, 112 features", &["features", "logistic_112"], nats(), learned(linear)),
-        rival("logistic, the paper's 76", &["features", "logistic_76"], nats(), learned(paper)),
+        rival("vibration threshold", levels, Arc::new(|at| vec![above(at, loudness())])),
+        rival("Ft/Fn threshold", ratios, Arc::new(|at| vec![above(at, ratio())])),
+        rival("logistic, 112 features", nats(), learned(linear)),
+        rival("logistic, the paper's 76", nats(), learned(paper)),
     ]
 }
 
 /// The rows that need no threshold, in the table's order.
 pub fn rows() -> Vec<Row> {
     use DetectorId::{Hebbian, Mlp, S1, S2};
-    let row = |name: &str, parts, ids: &'static [DetectorId]| Row {
+    let row = |name: &str, ids: &'static [DetectorId]| Row {
         name: name.to_owned(),
-        parts,
         grid: Vec::new(),
         threshold: None,
         make: Arc::new(move |_| ids.iter().map(|&id| shipped(id)).collect()),
     };
     vec![
-        row("s1", &["s1"], &[S1]),
-        row("s2", &["s2"], &[S2]),
-        row("hebbian", &["hebbian"], &[Hebbian]),
-        row("mlp", &["mlp"], &[Mlp]),
-        row("s1 or s2", &["s1", "s2"], &[S1, S2]),
-        row("s1 or mlp", &["s1", "mlp"], &[S1, Mlp]),
-        row("s2 or mlp", &["s2", "mlp"], &[S2, Mlp]),
-        row("s1 or hebbian", &["s1", "hebbian"], &[S1, Hebbian]),
-        row("the hand: any of four", &["s1", "s2", "hebbian", "mlp"], &[S1, S2, Hebbian, Mlp]),
+        row("s1", &[S1]),
+        row("s2", &[S2]),
+        row("hebbian", &[Hebbian]),
+        row("mlp", &[Mlp]),
+        row("s1 or s2", &[S1, S2]),
+        row("s1 or mlp", &[S1, Mlp]),
+        row("s2 or mlp", &[S2, Mlp]),
+        row("s1 or hebbian", &[S1, Hebbian]),
+        row("the hand: any of four", &[S1, S2, Hebbian, Mlp]),
     ]
 }
 

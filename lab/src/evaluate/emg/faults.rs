@@ -42,9 +42,7 @@ const RANGE_MV: [f64; 2] = [-200.0, 2_950.0];
 pub enum Fault {
     /// Off the skin: mains, rectified and smoothed.
     Lifted,
-    /// A bad contact: another level every now and then.
     Loose,
-    /// A rising level.
     Creeping,
     /// Hum beside the muscle.
     Humming,
@@ -142,7 +140,6 @@ struct Outcome {
     reported: bool,
 }
 
-/// The hand: what the muscles say, and how far it opens.
 #[derive(Clone)]
 struct Hand {
     emg: Emg,

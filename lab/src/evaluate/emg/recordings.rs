@@ -1,6 +1,5 @@
-//! Recorded envelopes of people, as the board reads them:
-//! `personP_dayD_postureQ.csv` at 100 Hz: `t_s`, four electrodes (`ecu`, `edc`, `fcr`, `fcu`, 32767 is 2.8 V), `label`: 1 rest, 3 close,
-//! 4 open, others nothing.
+//! Recorded envelopes of people, as the board reads them: `personP_dayD_postureQ.csv` at 100 Hz: `t_s`, four electrodes (`ecu`, `edc`,
+//! `fcr`, `fcu`, 32767 is 2.8 V), `label`: 1 rest, 3 close, 4 open, others nothing.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -81,7 +80,6 @@ impl Recording {
         self.uv.len()
     }
 
-    /// The electrodes that separate closing and opening best.
     pub(super) fn best_sites(&self) -> [usize; 2] {
         let pairs = FLEXORS.into_iter().flat_map(|flexor| EXTENSORS.map(|extensor| [flexor, extensor]));
         pairs.max_by(|a, b| self.turn(*a).total_cmp(&self.turn(*b))).unwrap_or([FLEXORS[0], EXTENSORS[0]])

@@ -128,7 +128,6 @@ pub struct Score {
 }
 
 impl Score {
-    /// The quantile of each number by itself.
     pub(super) fn quantile(scores: &[Self], part: f64) -> Option<Self> {
         if scores.is_empty() {
             return None;

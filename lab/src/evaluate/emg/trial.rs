@@ -18,7 +18,6 @@ pub(in crate::evaluate) enum Kind {
     FirstDayKept,
 }
 
-/// A recording, and the wearer to whom the hand is calibrated meanwhile.
 #[derive(Debug)]
 pub(in crate::evaluate) struct Trial<'a> {
     pub kind: Kind,

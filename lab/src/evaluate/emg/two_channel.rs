@@ -67,12 +67,10 @@ impl Movement {
         })
     }
 
-    /// Whether it is held, not repeated.
     fn is_held(&self) -> bool {
         !self.name.ends_with("dynamic")
     }
 
-    /// Whether it is held and moves the hand.
     fn is_scored(&self) -> bool {
         self.is_held() && self.wants != Wish::Rest
     }

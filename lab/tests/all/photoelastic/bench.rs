@@ -50,7 +50,6 @@ pub struct Slide {
     pub slips: f64,
 }
 
-/// A head that was calibrated on its first day, on another day.
 pub struct Bench {
     making: Making,
     day: Day,
@@ -165,7 +164,6 @@ impl Bench {
         loads.iter().map(|&to| self.press(std::mem::replace(&mut last, to), to, NO_HINT)).collect()
     }
 
-    /// A second in an open hand.
     fn rest(&mut self) {
         for _ in 0..CYCLES_PER_S as usize {
             self.press((0.0, 0.0), (0.0, 0.0), UNLOADED);

@@ -11,7 +11,6 @@ use tenax_logic::setting::SettingId;
 
 use super::{Counts, Heard, Inbox, Line, Outbox, Target};
 
-/// Time for a board to answer.
 pub const ANSWER_WITHIN: Duration = Duration::from_secs(2);
 /// Attempts to open a session, if another client of the line opens one at the same time.
 const SESSIONS_MAX: u32 = 8;
@@ -32,7 +31,6 @@ pub struct Client {
     answer: Option<Answer>,
     /// When the next command may be sent.
     free_at: Instant,
-    /// When readings were asked for.
     streamed: Option<Instant>,
 }
 
@@ -61,8 +59,7 @@ impl Client {
         self.inbox.counts()
     }
 
-    /// The next message. None if none comes within 0.1 s.
-    /// Fails if the line has ended: with `UnexpectedEof` if it was closed in order.
+    /// The next message. None if none comes within 0.1 s. Fails if the line has ended: with `UnexpectedEof` if it was closed in order.
     pub fn next_message(&mut self) -> io::Result<Option<Heard>> {
         Ok(self.next_frame()?.and_then(Result::ok))
     }
@@ -179,7 +176,6 @@ impl Client {
     }
 }
 
-/// Whether a read failed only because nothing has come yet.
 pub fn is_silence(error: &io::Error) -> bool {
     matches!(error.kind(), ErrorKind::TimedOut | ErrorKind::WouldBlock | ErrorKind::Interrupted)
 }

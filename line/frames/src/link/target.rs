@@ -19,7 +19,6 @@ const CONNECT_TIMEOUT: Duration = Duration::from_secs(3);
 pub enum Target {
     /// A serial port or a pseudo-terminal: `/dev/ttyACM0`, `COM3`, `/dev/pts/5`.
     Port(String),
-    /// HOST:PORT, written `tcp:HOST:PORT`.
     Tcp(String),
     File(PathBuf),
 }

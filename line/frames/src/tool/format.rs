@@ -56,7 +56,6 @@ const fn is_plain(value: &Value) -> bool {
     !matches!(value, Value::Object(_) | Value::Array(_))
 }
 
-/// Four digits of a number, `-` where there is none.
 fn word(value: &Value) -> String {
     match value {
         Value::Null => "-".to_owned(),

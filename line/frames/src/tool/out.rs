@@ -8,7 +8,6 @@ use std::io::{self, Write};
 #[error("nobody reads the output any more")]
 pub struct Closed;
 
-/// Prints a line on standard output.
 #[macro_export]
 macro_rules! say {
     ($($what:tt)*) => { $crate::tool::out::print(format_args!("{}\n", format_args!($($what)*))) };

@@ -54,7 +54,6 @@ impl Making {
     }
 
     /// Half the retardation under a normal force alone, rad: a quarter turn at the peak, half a turn where it is back.
-    ///
     /// Equation 9 has it proportional to force, so that the curve would be back at twice the peak. Figure 14 is back at 3.5
     /// times: the phase grows as `F^0.55`, nearly that of a line contact which widens under load (Hertz: `F^0.5`).
     pub fn phase_rad(&self, normal_n: f64) -> f64 {
@@ -65,7 +64,6 @@ impl Making {
 }
 
 impl Day {
-    /// The day on which it was made.
     pub const FIRST: Self =
         Self { source: 1.0, source_per_min: 0.0, ambient_mv: 0.0, aged_rad: 0.0, aged_optic: 1.0 };
 

@@ -1,5 +1,4 @@
 //! A photoelastic head in the place of PVDF film 12 (Dubey 2006): one optical channel for slip and normal force.
-//!
 //! Under the metal strip the layer is a spring. Where friction falls with speed the strip vibrates by itself
 //! ([`physics::stribeck`](crate::physics::stribeck)), its pull shears the layer, and the light flickers.
 

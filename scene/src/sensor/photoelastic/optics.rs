@@ -15,8 +15,7 @@ impl Layer {
         breadth_m: 9e-3,
         thickness_m: 3e-3,
         wavelength_m: 850e-9,
-        // Not in the paper. This one puts equation 9's first peak at figure 14's 1.7 N; handbooks give 3e-9 for urethane
-        // rubber.
+        // Not in the paper. This one puts equation 9's first peak at figure 14's 1.7 N; handbooks give 3e-9 for urethane rubber.
         stress_optic_m2_n: 850e-9 * 9e-3 / (2.0 * 1.7),
         // Not in the paper. At 45 degrees a normal force alone gives the whole intensity.
         polariser_rad: std::f64::consts::FRAC_PI_4,

@@ -15,7 +15,6 @@ pub struct CostMeter {
     pub tick: u64,
     pub after_tick: u64,
     entered: Option<u64>,
-    /// Ticks so far.
     pub count: u64,
     sum: u64,
     max: u64,

@@ -37,7 +37,6 @@ pub struct Nucleo {
 }
 
 impl Nucleo {
-    /// The board out of its box.
     pub fn new(instructions_per_second: NonZeroU64) -> Result<Self, Error> {
         let mut chip = Stm32f427::new()?;
         chip.usart[USART2].attach(Line::default());

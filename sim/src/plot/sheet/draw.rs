@@ -6,7 +6,7 @@ use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::{Axis, Cell, Mark, Panel, Series, Sheet};
+use super::{Axis, Mark, Panel, Series, Sheet};
 
 const WIDTH: u32 = 1_200;
 const PANEL_HEIGHT: u32 = 340;
@@ -18,7 +18,6 @@ const FOOT_HEIGHT: u32 = 74;
 const MARGIN: i32 = 26;
 const FONTS: &str = "DejaVu Sans, Verdana, sans-serif";
 const INK: RGBColor = RGBColor(40, 40, 40);
-const FAILED: RGBColor = RGBColor(225, 225, 225);
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
@@ -38,19 +37,15 @@ pub fn svg(sheet: &Sheet) -> anyhow::Result<String> {
         let areas = panels.split_evenly((rows as usize, sheet.columns as usize));
         let (common, own) = names(sheet);
         for ((panel, area), own) in sheet.panels.iter().zip(&areas).zip(&own) {
-            draw_panel(area, panel, own, sheet.errors)?;
+            draw_panel(area, panel, own)?;
         }
-        let mut x = MARGIN;
-        if let Some(errors) = sheet.errors {
-            x = scale(&foot, errors, (x, 14))?;
-        }
-        legend(&foot, &common, (x, 14), (WIDTH as i32, 14, 26))?;
+        legend(&foot, &common, (MARGIN, 14), (WIDTH as i32, 14, 26))?;
         drawn(root.present())?;
     }
     Ok(svg)
 }
 
-fn draw_panel(area: &Area, panel: &Panel, own: &[&Series], errors: Option<(f64, f64)>) -> anyhow::Result<()> {
+fn draw_panel(area: &Area, panel: &Panel, own: &[&Series]) -> anyhow::Result<()> {
     let wide = area.dim_in_pixel().0 as i32;
     let rows = legend(area, own, (70, 40), (wide, 12, OWN_HEIGHT))?;
     let mut chart = drawn(
@@ -68,14 +63,11 @@ fn draw_panel(area: &Area, panel: &Panel, own: &[&Series], errors: Option<(f64, 
         let corners = [(band.x.0, band.y.0), (band.x.1, band.y.1)];
         drawn(chart.draw_series([Rectangle::new(corners, band.colour.filled())]))?;
     }
-    for cell in &panel.cells {
-        draw_cell(&mut chart, panel, cell, errors.unwrap_or((1e-6, 1.0)))?;
-    }
     drawn(
         chart
             .configure_mesh()
             .light_line_style(TRANSPARENT)
-            .bold_line_style(BLACK.mix(if panel.cells.is_empty() { 0.10 } else { 0.0 }))
+            .bold_line_style(BLACK.mix(0.10))
             .axis_style(INK)
             .x_labels(labels(&panel.x))
             .y_labels(labels(&panel.y))
@@ -89,33 +81,6 @@ fn draw_panel(area: &Area, panel: &Panel, own: &[&Series], errors: Option<(f64, 
     )?;
     for series in &panel.series {
         draw_series(&mut chart, panel, series)?;
-    }
-    for (x, y, text) in &panel.words {
-        let style = (FONTS, 13).into_font().color(&INK).pos(Pos::new(HPos::Left, VPos::Center));
-        let at = (panel.x.place(*x), panel.y.place(*y));
-        let word = EmptyElement::at(at) + Text::new(text.clone(), (9, 0), style);
-        drawn(chart.draw_series([word]))?;
-    }
-    Ok(())
-}
-
-fn draw_cell(chart: &mut Chart, panel: &Panel, cell: &Cell, errors: (f64, f64)) -> anyhow::Result<()> {
-    let (right, low) = (panel.x.place(cell.x.1), panel.y.place(cell.y.0));
-    let corners = [(panel.x.place(cell.x.0), low), (right, panel.y.place(cell.y.1))];
-    let colour = cell.error.map_or(FAILED, |error| colour(error, errors));
-    // A little under the next cells to the right and below, which come later: no seams.
-    let (wide, high) = (panel.x.places(), panel.y.places());
-    let under = [
-        (
-            (right + (wide.end - wide.start) / 200.0).min(wide.end),
-            (low - (high.end - high.start) / 200.0).max(high.start),
-        ),
-        (corners[0].0, corners[1].1),
-    ];
-    drawn(chart.draw_series([Rectangle::new(under, colour.filled())]))?;
-    if cell.error.is_none() {
-        let middle = ((corners[0].0 + corners[1].0) / 2.0, (corners[0].1 + corners[1].1) / 2.0);
-        drawn(chart.draw_series([Cross::new(middle, 3, INK.mix(0.7).stroke_width(1))]))?;
     }
     Ok(())
 }
@@ -146,11 +111,6 @@ fn draw_stretch(
         Mark::Crosses => drawn(chart.draw_series(marks.map(|at| Cross::new(at, 4, line))))?,
     };
     Ok(())
-}
-
-fn colour(error: f64, (least, most): (f64, f64)) -> RGBColor {
-    let part = (error.max(least).log10() - least.log10()) / (most.log10() - least.log10());
-    ViridisRGB.get_color(part.clamp(0.0, 1.0))
 }
 
 fn names(sheet: &Sheet) -> (Vec<&Series>, Vec<Vec<&Series>>) {
@@ -198,25 +158,6 @@ fn legend(
         x += width;
     }
     Ok(if named.is_empty() { 0 } else { (y - top) / row + 1 })
-}
-
-fn scale(area: &Area, errors: (f64, f64), (left, y): (i32, i32)) -> anyhow::Result<i32> {
-    const LENGTH: i32 = 180;
-    words(area, "error", (left, y - 6), 14, (HPos::Left, VPos::Top))?;
-    let from = left + 100;
-    for pixel in 0..LENGTH {
-        let share = f64::from(pixel) / f64::from(LENGTH);
-        let error = errors.0 * (errors.1 / errors.0).powf(share);
-        let corners = [(from + pixel, y - 7), ((from + pixel + 2).min(from + LENGTH), y + 8)];
-        drawn(area.draw(&Rectangle::new(corners, colour(error, errors).filled())))?;
-    }
-    words(area, &power(errors.0.log10()), (from - 6, y - 6), 13, (HPos::Right, VPos::Top))?;
-    words(area, &power(errors.1.log10()), (from + LENGTH + 6, y - 6), 13, (HPos::Left, VPos::Top))?;
-    let right = from + LENGTH + 46;
-    drawn(area.draw(&Rectangle::new([(right, y - 7), (right + 22, y + 8)], FAILED.filled())))?;
-    drawn(area.draw(&Cross::new((right + 11, y), 3, INK.mix(0.7).stroke_width(1))))?;
-    words(area, "failed", (right + 30, y - 6), 14, (HPos::Left, VPos::Top))?;
-    Ok(right + 100)
 }
 
 fn labels(axis: &Axis) -> usize {
