@@ -11,6 +11,7 @@ pub mod board_model;
 pub mod budgets;
 pub mod cli;
 pub mod disturbances;
+pub mod drawn;
 pub mod figure;
 pub mod image;
 pub mod input;

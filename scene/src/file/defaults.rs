@@ -84,7 +84,15 @@ impl Default for Fsr {
     fn default() -> Self {
         // Interlink's integration guide gives 10 % of hysteresis and 5 % of drift in a log decade at most; half of each
         // is assumed to be left under a tilting element that always presses the same spots.
-        Self { hysteresis: Part::of(0.03), creep: Part::of(0.03), creep_s: Duration::of(10.0) }
+        Self {
+            hysteresis: Part::of(0.03),
+            creep: Part::of(0.03),
+            creep_s: Duration::of(10.0),
+            // An ideal fitting; worlds that are drawn have none.
+            gains: [Gain::of(1.0); 4],
+            aside_mm: [Lever::of(0.0); 2],
+            noise: Part::of(0.0),
+        }
     }
 }
 

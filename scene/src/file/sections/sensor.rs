@@ -1,6 +1,7 @@
 //! Sensors of the fingertip, and the cameras.
 
 use serde::Deserialize;
+use tenax_hal_shim::channel::FSR_COUNT;
 
 use crate::file::quantity::{
     DeadTime, Degrees, Duration, Gain, Hertz, Instant, Lever, Micrometres, Millimetres, Millinewtons,
@@ -38,6 +39,12 @@ pub struct Fsr {
     pub hysteresis: Part,
     pub creep: Part,
     pub creep_s: Duration,
+    /// Gains of quadrants A to D.
+    pub gains: [Gain; FSR_COUNT],
+    /// Where the load lies beside the pad's middle, along the shear and across it.
+    pub aside_mm: [Lever; 2],
+    /// Noise of a reading, rms, as a part of it.
+    pub noise: Part,
 }
 
 #[derive(Clone, Debug, Deserialize)]
