@@ -146,7 +146,7 @@ pub const DEAD_TIME_MS: Law = log_normal(30.0, 0.45, 10.0, 100.0); // A
 pub const GAP_MM: Law = log_uniform(5.0, 15.0); // A: opening beyond the object's width
 /// The wearer's own grip over what carries the object still and dry.
 pub const GRIP_OVER_NEED: Law = log_normal(1.5, 0.4, 0.8, 4.0); // A
-pub const CLOSING_MV: Law = uniform(300.0, 500.0); // A
+pub const CLOSING_MV: Law = uniform(200.0, 280.0); // A: gently
 
 // Muscles.
 
@@ -161,7 +161,7 @@ pub const LIFTED_MV: Law = log_uniform(50.0, 1_500.0); // A: mains of the open e
 
 // Loads and events.
 
-pub const LIFT_S: Law = log_uniform(0.4, 1.5); // A
+pub const LIFT_M_S2: Law = log_normal(1.5, 0.5, 0.3, 15.0); // A
 pub const FILLING_KG_S: Law = log_normal(0.06, 0.6, 0.005, 0.17); // a tap gives 10 l a minute; the rest A
 pub const POURS_S: Law = log_uniform(1.5, 5.0); // A
 pub const DROPPED_KG: Law = log_uniform(0.005, 0.3); // A
