@@ -1,5 +1,7 @@
 //! Scores on drawn worlds: what the hand kept, pressed and let slide, beside a causal oracle and the bound.
 
+use std::cmp::Ordering;
+
 use anyhow::Context;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -12,6 +14,7 @@ use crate::session::{self, Board, controls};
 
 /// Worlds in which the oracle slides further than half a pad are not scored for losses, mm.
 pub const HALF_PAD_MM: f64 = 9.0;
+const HARDEST: usize = 10;
 
 /// One world's outcome.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -25,6 +28,8 @@ pub struct Score {
     pub slid_mm_oracle: f64,
     pub peak_n: f64,
     pub peak_n_oracle: f64,
+    /// The bound's peak.
+    pub needed_n: Option<f64>,
     /// Peak force over the bound's. Null if the run lost the object.
     pub peak_over_needed: Option<f64>,
     pub without_need_n: f64,
@@ -48,6 +53,7 @@ impl Score {
             slid_mm_oracle: oracle.distance_mm,
             peak_n: outcome.truth.peak_grip_n.unwrap_or(0.0),
             peak_n_oracle: oracle.peak_grip_n.unwrap_or(0.0),
+            needed_n: report.bound.peak_force_n,
             peak_over_needed: report.bound.peak_force_ratio,
             without_need_n: report.added.added_without_need_n.unwrap_or(0.0),
             reflex_while_active: report.wearer.reflex_while_active,
@@ -103,6 +109,8 @@ pub struct Report {
     pub families: Map<String, Value>,
     /// Every world that was lost where the oracle keeps it.
     pub lost: Vec<Score>,
+    /// The worlds with the highest peak over what is needed, at most ten.
+    pub hardest: Vec<Score>,
 }
 
 /// Runs `count` worlds side by side.
@@ -124,11 +132,15 @@ impl Report {
         let row = |family: Family| {
             Ok((family.name().to_owned(), serde_json::to_value(Row::of(of(family)))?))
         };
+        let mut hardest: Vec<&Score> =
+            scores.iter().filter(|score| score.accepted && score.peak_over_needed.is_some()).collect();
+        hardest.sort_by(|a, b| b.peak_over_needed.partial_cmp(&a.peak_over_needed).unwrap_or(Ordering::Equal));
         Ok(Self {
             seed,
             total: Row::of(scores.iter()),
             families: drawn.map(row).collect::<anyhow::Result<_>>()?,
             lost: scores.iter().filter(|score| score.is_lost()).cloned().collect(),
+            hardest: hardest.into_iter().take(HARDEST).cloned().collect(),
         })
     }
 }

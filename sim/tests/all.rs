@@ -5,6 +5,7 @@ mod common;
 mod acts;
 mod behaviours;
 mod cut_wires;
+mod drawn;
 mod emg;
 mod failures;
 mod feedback;

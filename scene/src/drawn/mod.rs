@@ -412,7 +412,7 @@ impl Page {
     fn drop_in(&mut self, held: &Held) {
         let [add_kg, from_mm, for_ms] =
             [ranges::DROPPED_KG, ranges::DROPPED_FROM_MM, ranges::DROPPED_MS].map(|law| self.draw(law));
-        let add_kg = add_kg.min(held.mass_kg);
+        let add_kg = add_kg.min(ranges::DROPPED_PART * held.mass_kg);
         let (at_s, for_s) = (held.from_s + self.between(0.2, 3.0), for_ms / 1e3);
         self.table("[[fill]]", &[("at_s", at_s), ("for_s", for_s), ("add_kg", add_kg)]);
         // What falls in is stopped: m sqrt(2 g h) over the time of its landing.
@@ -425,6 +425,7 @@ impl Page {
         for _ in 0..self.between(1.0, 3.0) as u32 {
             let [force_n, rate_n_s, for_s] =
                 [ranges::TUG_N, ranges::TUG_N_S, ranges::TUG_S].map(|law| self.draw(law));
+            let force_n = force_n.min(ranges::TUG_WEIGHTS * held.mass_kg * GRAVITY_M_S2);
             let ramp_ms = (1e3 * force_n / rate_n_s).clamp(1.0, 1e3);
             let down = if self.happens(0.75) { -1.0 } else { 1.0 };
             self.pull(at_s, for_s + ramp_ms / 1e3, down * force_n, ramp_ms, false);
@@ -474,7 +475,6 @@ impl Page {
 
     fn will(&mut self, held: &Held) {
         let from_s = held.from_s;
-        let [tense_mv, tense_s] = [ranges::TENSE_MV, ranges::TENSE_S].map(|law| self.draw(law));
         match self.between(0.0, 6.0) as u32 {
             // They open a little, and close again.
             0 => {
@@ -509,10 +509,17 @@ impl Page {
                 }
                 self.splash(at_s.min(from_s + 3.0), held);
             }
-            // Both muscles are tense, from the lift on or over a slip.
+            // Both muscles are tense, from the lift on or over a slip, or restless.
             4 => {
-                let at_s = from_s - self.between(0.0, 1.5);
-                self.muscle(at_s, tense_s, "both", tense_mv);
+                let mut at_s = from_s - self.between(0.0, 1.5);
+                for _ in 0..self.between(1.0, 4.0) as u32 {
+                    let [level_mv, for_s] = [ranges::TENSE_MV, ranges::TENSE_S].map(|law| self.draw(law));
+                    self.muscle(at_s, for_s, "both", level_mv);
+                    at_s += for_s + self.between(0.2, 1.5);
+                    if at_s > from_s + HAPPENS_S {
+                        break;
+                    }
+                }
                 self.splash(from_s, held);
             }
             // A slip, and one more while the hand closes.

@@ -145,7 +145,7 @@ pub const HAND_MM_S: Law = log_normal(100.0, 0.5, 20.0, 300.0);
 pub const DEAD_TIME_MS: Law = log_normal(30.0, 0.45, 10.0, 100.0); // A
 pub const GAP_MM: Law = log_uniform(5.0, 15.0); // A: opening beyond the object's width
 /// The wearer's own grip over what carries the object still and dry.
-pub const GRIP_OVER_NEED: Law = log_normal(1.5, 0.4, 0.8, 4.0); // A
+pub const GRIP_OVER_NEED: Law = log_normal(1.5, 0.4, 1.0, 4.0); // A
 pub const CLOSING_MV: Law = uniform(200.0, 280.0); // A: gently
 
 // Muscles.
@@ -165,6 +165,9 @@ pub const LIFT_M_S2: Law = log_normal(1.5, 0.5, 0.3, 15.0); // A
 pub const FILLING_KG_S: Law = log_normal(0.06, 0.6, 0.005, 0.17); // a tap gives 10 l a minute; the rest A
 pub const POURS_S: Law = log_uniform(1.5, 5.0); // A
 pub const DROPPED_KG: Law = log_uniform(0.005, 0.3); // A
+/// What falls in is at most this part of what it falls into, and nobody tugs at more times its weight: harder ones no hand holds (A).
+pub const DROPPED_PART: f64 = 0.5;
+pub const TUG_WEIGHTS: f64 = 3.0;
 pub const DROPPED_FROM_MM: Law = log_uniform(10.0, 300.0); // A
 pub const DROPPED_MS: Law = log_uniform(5.0, 30.0); // A
 /// Studied at 6 to 30 N (Uygur 2010); 4 to 16 N pull objects out of terminal devices (arXiv 2503.01585).
