@@ -95,7 +95,8 @@ impl Row {
             peak_over_needed_p95: not_exceeded(peaks(), 0.95),
             slid_mm_p95: not_exceeded(fair.iter().map(|score| score.slid_mm), 0.95),
             slid_mm_p95_oracle: not_exceeded(fair.iter().map(|score| score.slid_mm_oracle), 0.95),
-            without_need_n: all.iter().map(|score| score.without_need_n).sum::<f64>() / all.len().max(1) as f64,
+            without_need_n: all.iter().map(|score| score.without_need_n).sum::<f64>()
+                / all.len().max(1) as f64,
             reflex_while_active: all.iter().map(|score| score.reflex_while_active).sum(),
         }
     }
@@ -129,12 +130,11 @@ impl Report {
     pub fn new(seed: u64, scores: &[Score]) -> anyhow::Result<Self> {
         let of = |family: Family| scores.iter().filter(move |score| score.family == family.name());
         let drawn = Family::ALL.into_iter().filter(|&family| of(family).next().is_some());
-        let row = |family: Family| {
-            Ok((family.name().to_owned(), serde_json::to_value(Row::of(of(family)))?))
-        };
+        let row = |family: Family| Ok((family.name().to_owned(), serde_json::to_value(Row::of(of(family)))?));
         let mut hardest: Vec<&Score> =
             scores.iter().filter(|score| score.accepted && score.peak_over_needed.is_some()).collect();
-        hardest.sort_by(|a, b| b.peak_over_needed.partial_cmp(&a.peak_over_needed).unwrap_or(Ordering::Equal));
+        hardest
+            .sort_by(|a, b| b.peak_over_needed.partial_cmp(&a.peak_over_needed).unwrap_or(Ordering::Equal));
         Ok(Self {
             seed,
             total: Row::of(scores.iter()),

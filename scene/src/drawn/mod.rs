@@ -282,14 +282,9 @@ impl Page {
         self.put(format_args!("aside_mm = {aside_mm:.3?}\ngains = {gains:.3?}"));
         let factor = self.draw(ranges::FILM_FACTOR);
         let mains_hz = if self.happens(0.5) { 50.0 } else { 60.0 };
-        let [gear_hz, gear_mv, mains_mv, noise_mv, decades] = [
-            ranges::GEAR_HZ,
-            ranges::GEAR_MV,
-            ranges::MAINS_MV,
-            ranges::FILM_NOISE_MV,
-            ranges::FILM_DECADES,
-        ]
-        .map(|law| self.draw(law));
+        let [gear_hz, gear_mv, mains_mv, noise_mv, decades] =
+            [ranges::GEAR_HZ, ranges::GEAR_MV, ranges::MAINS_MV, ranges::FILM_NOISE_MV, ranges::FILM_DECADES]
+                .map(|law| self.draw(law));
         self.table(
             "[pvdf]",
             &[
@@ -314,9 +309,7 @@ impl Page {
         );
         if mains_hz > 50.0 {
             // Whoever fits the hand tells it the mains of the country.
-            self.put(format_args!(
-                "\n[[command]]\nat_s = 0.1\nkind = \"set-mains-60-hz-flag\"\nvalue = 1"
-            ));
+            self.put(format_args!("\n[[command]]\nat_s = 0.0\nkind = \"set-mains-60-hz-flag\"\nvalue = 1"));
         }
     }
 
@@ -495,8 +488,7 @@ impl Page {
                 let channel = if self.happens(0.5) { "myo_flexor" } else { "myo_extensor" };
                 let mut at_s = from_s;
                 for _ in 0..self.between(1.0, 4.0) as u32 {
-                    let [for_s, pickup_mv] =
-                        [ranges::LIFTED_S, ranges::LIFTED_MV].map(|law| self.draw(law));
+                    let [for_s, pickup_mv] = [ranges::LIFTED_S, ranges::LIFTED_MV].map(|law| self.draw(law));
                     self.table(
                         "[[electrode_lift]]",
                         &[("at_s", at_s), ("for_s", for_s), ("pickup_mv", pickup_mv)],
