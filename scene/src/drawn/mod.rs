@@ -10,6 +10,8 @@ use std::str::FromStr;
 
 use ranges::Law;
 
+use crate::file::quantity::Gain;
+use crate::file::sections::Pvdf;
 use crate::file::{SceneError, SceneFile};
 use crate::physics::GRAVITY_M_S2;
 use crate::random::{Noise, Source};
@@ -42,19 +44,21 @@ impl Family {
         Self::WearersWill,
     ];
 
+    const NAMES: [&str; 10] = [
+        "quiet-hold",
+        "disturbed-hold",
+        "splash",
+        "condensation",
+        "pour",
+        "drop-in-and-tug",
+        "walk-and-swing",
+        "fragile-and-slippery",
+        "off-centre",
+        "wearers-will",
+    ];
+
     pub const fn name(self) -> &'static str {
-        match self {
-            Self::QuietHold => "quiet-hold",
-            Self::DisturbedHold => "disturbed-hold",
-            Self::Splash => "splash",
-            Self::Condensation => "condensation",
-            Self::Pour => "pour",
-            Self::DropInAndTug => "drop-in-and-tug",
-            Self::WalkAndSwing => "walk-and-swing",
-            Self::FragileAndSlippery => "fragile-and-slippery",
-            Self::OffCentre => "off-centre",
-            Self::WearersWill => "wearers-will",
-        }
+        Self::NAMES[self as usize]
     }
 }
 
@@ -62,11 +66,8 @@ impl FromStr for Family {
     type Err = String;
 
     fn from_str(name: &str) -> Result<Self, String> {
-        let names = || Self::ALL.map(Self::name).join(", ");
-        Self::ALL
-            .into_iter()
-            .find(|family| family.name() == name)
-            .ok_or_else(|| format!("no family; there are {}", names()))
+        let found = Self::ALL.into_iter().find(|family| family.name() == name);
+        found.ok_or_else(|| format!("no family; there are {}", Self::NAMES.join(", ")))
     }
 }
 
@@ -156,8 +157,18 @@ impl Page {
     /// A table, or an entry of a list, with its numbers to four places.
     fn table(&mut self, head: &str, numbers: &[(&str, f64)]) {
         self.put(format_args!("\n{head}"));
-        for (key, value) in numbers {
-            self.put(format_args!("{key} = {}", (value * 1e4).round() / 1e4));
+        numbers.iter().for_each(|(key, value)| self.number(key, *value));
+    }
+
+    fn number(&mut self, key: &str, value: f64) {
+        self.put(format_args!("{key} = {}", (value * 1e4).round() / 1e4));
+    }
+
+    /// More keys of the last table, each drawn.
+    fn drawn(&mut self, laws: &[(&str, Law)]) {
+        for (key, law) in laws {
+            let value = self.draw(*law);
+            self.number(key, value);
         }
     }
 
@@ -277,40 +288,49 @@ impl Page {
         let law = if family == Family::OffCentre { ranges::FAR_ASIDE_MM } else { ranges::ASIDE_MM };
         let aside_mm = [self.draw(law), self.draw(law)];
         let gains: [f64; 4] = std::array::from_fn(|_| self.draw(ranges::QUADRANT_GAIN));
-        let own = [ranges::HYSTERESIS, ranges::CREEP, ranges::FSR_NOISE].map(|law| self.draw(law));
-        self.table("[fsr]", &[("hysteresis", own[0]), ("creep", own[1]), ("noise", own[2])]);
-        self.put(format_args!("aside_mm = {aside_mm:.3?}\ngains = {gains:.3?}"));
+        self.put(format_args!("\n[fsr]\naside_mm = {aside_mm:.3?}\ngains = {gains:.3?}"));
+        self.drawn(&[
+            ("hysteresis", ranges::HYSTERESIS),
+            ("creep", ranges::CREEP),
+            ("noise", ranges::FSR_NOISE),
+        ]);
         let factor = self.draw(ranges::FILM_FACTOR);
-        let mains_hz = if self.happens(0.5) { 50.0 } else { 60.0 };
-        let [gear_hz, gear_mv, mains_mv, noise_mv, decades] =
-            [ranges::GEAR_HZ, ranges::GEAR_MV, ranges::MAINS_MV, ranges::FILM_NOISE_MV, ranges::FILM_DECADES]
-                .map(|law| self.draw(law));
+        let mains_hz = self.mains_hz();
+        let scenes = Pvdf::default();
+        let of_film = |gain: Gain| factor * gain.get();
         self.table(
             "[pvdf]",
             &[
-                ("normal_mv_per_n", 2.0 * factor),
-                ("shear_mv_per_n", 3.0 * factor),
-                ("release_mv_per_n", 200.0 * factor),
-                ("texture_mv_per_n", 40.0 * factor),
-                ("adjust_mv_per_n_s", 0.02 * factor),
-                ("film_decades", decades),
-                ("motor_hz", gear_hz),
-                ("motor_mv", gear_mv),
+                ("normal_mv_per_n", of_film(scenes.normal_mv_per_n)),
+                ("shear_mv_per_n", of_film(scenes.shear_mv_per_n)),
+                ("release_mv_per_n", of_film(scenes.release_mv_per_n)),
+                ("texture_mv_per_n", of_film(scenes.texture_mv_per_n)),
+                ("adjust_mv_per_n_s", of_film(scenes.adjust_mv_per_n_s)),
                 ("mains_hz", mains_hz),
-                ("mains_mv", mains_mv),
-                ("noise_mv", noise_mv),
             ],
         );
-        let own = [ranges::MYO_NOISE_MV, ranges::RIPPLE, ranges::CROSSTALK, ranges::MYO_MAINS_MV]
-            .map(|law| self.draw(law));
-        self.table(
-            "[myo]",
-            &[("noise_mv", own[0]), ("ripple", own[1]), ("crosstalk", own[2]), ("mains_mv", own[3])],
-        );
+        self.drawn(&[
+            ("motor_hz", ranges::GEAR_HZ),
+            ("motor_mv", ranges::GEAR_MV),
+            ("mains_mv", ranges::MAINS_MV),
+            ("noise_mv", ranges::FILM_NOISE_MV),
+            ("film_decades", ranges::FILM_DECADES),
+        ]);
+        self.table("[myo]", &[]);
+        self.drawn(&[
+            ("noise_mv", ranges::MYO_NOISE_MV),
+            ("ripple", ranges::RIPPLE),
+            ("crosstalk", ranges::CROSSTALK),
+            ("mains_mv", ranges::MYO_MAINS_MV),
+        ]);
         if mains_hz > 50.0 {
             // Whoever fits the hand tells it the mains of the country.
             self.put(format_args!("\n[[command]]\nat_s = 0.0\nkind = \"set-mains-60-hz-flag\"\nvalue = 1"));
         }
+    }
+
+    fn mains_hz(&mut self) -> f64 {
+        if self.happens(0.5) { 50.0 } else { 60.0 }
     }
 
     fn muscle(&mut self, at_s: f64, for_s: f64, intent: &str, level_mv: f64) {
@@ -320,18 +340,13 @@ impl Page {
 
     fn knock(&mut self, from_s: f64, for_s: f64) {
         let at_s = self.between(from_s, from_s + for_s);
-        let [peak_mv, ring_hz, decay_ms, uneven] =
-            [ranges::KNOCK_MV, ranges::KNOCK_HZ, ranges::KNOCK_MS, ranges::UNEVEN].map(|law| self.draw(law));
-        self.table(
-            "[[knock]]",
-            &[
-                ("at_s", at_s),
-                ("peak_mv", peak_mv),
-                ("ring_hz", ring_hz),
-                ("decay_ms", decay_ms),
-                ("uneven", uneven),
-            ],
-        );
+        self.table("[[knock]]", &[("at_s", at_s)]);
+        self.drawn(&[
+            ("peak_mv", ranges::KNOCK_MV),
+            ("ring_hz", ranges::KNOCK_HZ),
+            ("decay_ms", ranges::KNOCK_MS),
+            ("uneven", ranges::UNEVEN),
+        ]);
     }
 
     /// The dry friction times `factor` from `at_s` on.
@@ -346,13 +361,12 @@ impl Page {
             self.knock(held.from_s, HAPPENS_S);
         }
         if self.happens(0.5) {
-            let (at_s, peak_mv) = (held.from_s + self.between(0.0, 2.0), self.draw(ranges::MAINS_MV));
-            let hum_hz = if self.happens(0.5) { 50.0 } else { 60.0 };
-            let for_s = self.between(1.0, 3.5);
-            self.table(
-                "[[hum]]",
-                &[("at_s", at_s), ("for_s", for_s), ("peak_mv", peak_mv), ("hum_hz", hum_hz)],
-            );
+            let at_s = held.from_s + self.between(0.0, 2.0);
+            self.table("[[hum]]", &[("at_s", at_s)]);
+            self.drawn(&[("peak_mv", ranges::MAINS_MV)]);
+            let (hum_hz, for_s) = (self.mains_hz(), self.between(1.0, 3.5));
+            self.number("hum_hz", hum_hz);
+            self.number("for_s", for_s);
         }
         if self.happens(0.5) {
             self.bump(held);
@@ -427,14 +441,10 @@ impl Page {
     }
 
     fn pull(&mut self, at_s: f64, for_s: f64, force_n: f64, ramp_ms: f64, takes: bool) {
+        let force_n = force_n.clamp(-200.0, 200.0);
         self.table(
             "[[pull]]",
-            &[
-                ("at_s", at_s),
-                ("for_s", for_s),
-                ("force_n", force_n.clamp(-200.0, 200.0)),
-                ("ramp_ms", ramp_ms),
-            ],
+            &[("at_s", at_s), ("for_s", for_s), ("force_n", force_n), ("ramp_ms", ramp_ms)],
         );
         self.put(format_args!("takes = {takes}"));
     }
@@ -488,11 +498,9 @@ impl Page {
                 let channel = if self.happens(0.5) { "myo_flexor" } else { "myo_extensor" };
                 let mut at_s = from_s;
                 for _ in 0..self.between(1.0, 4.0) as u32 {
-                    let [for_s, pickup_mv] = [ranges::LIFTED_S, ranges::LIFTED_MV].map(|law| self.draw(law));
-                    self.table(
-                        "[[electrode_lift]]",
-                        &[("at_s", at_s), ("for_s", for_s), ("pickup_mv", pickup_mv)],
-                    );
+                    let for_s = self.draw(ranges::LIFTED_S);
+                    self.table("[[electrode_lift]]", &[("at_s", at_s), ("for_s", for_s)]);
+                    self.drawn(&[("pickup_mv", ranges::LIFTED_MV)]);
                     self.put(format_args!("channel = \"{channel}\""));
                     at_s += for_s + self.between(0.2, 1.0);
                     if at_s > from_s + 2.5 {

@@ -64,10 +64,6 @@ impl Law {
             }
         }
     }
-
-    pub fn contains(self, value: f64) -> bool {
-        (self.low..=self.high).contains(&value)
-    }
 }
 
 // Object and contact.
