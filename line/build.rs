@@ -9,18 +9,10 @@ fn main() {
     programs();
 }
 
-/// Sets `python` and, with its name in CHROMIUM, `chromium`: `TENAX_CHROMIUM`, or what Debian and others call it.
+/// Sets `python` and, with its name in MCAP_PYTHON, `mcap_reader`.
 fn programs() {
-    println!("cargo::rustc-check-cfg=cfg(chromium, mcap_reader, python)");
-    println!("cargo::rerun-if-env-changed=TENAX_CHROMIUM");
-    let is_there =
-        |name: &String| Command::new(name).arg("--version").output().is_ok_and(|ran| ran.status.success());
-    let names = ["chromium", "chromium-browser", "google-chrome"].map(str::to_owned);
-    if let Some(name) = std::env::var("TENAX_CHROMIUM").into_iter().chain(names).find(is_there) {
-        println!("cargo::rustc-cfg=chromium");
-        println!("cargo::rustc-env=CHROMIUM={name}");
-    }
-    if is_there(&"python3".to_owned()) {
+    println!("cargo::rustc-check-cfg=cfg(mcap_reader, python)");
+    if Command::new("python3").arg("--version").output().is_ok_and(|ran| ran.status.success()) {
         println!("cargo::rustc-cfg=python");
     }
     // The public reader of recordings, where `.ci/python` or a person has installed it.

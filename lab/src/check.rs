@@ -3,7 +3,6 @@
 pub mod array;
 pub mod default_scene;
 pub mod learn;
-pub mod mistakes;
 pub mod people;
 pub mod recordings;
 pub mod wearer;

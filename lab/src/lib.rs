@@ -10,6 +10,5 @@ pub mod dataset;
 pub mod equations;
 pub mod evaluate;
 pub mod learn;
-pub mod photoelastic;
 pub mod train;
 pub mod vision;

@@ -34,13 +34,13 @@ enum Command {
     Monitor(monitor::Args),
     /// Record a board's line
     Record(record::Args),
-    /// Play a recording: serve its line, or write it as CSV
+    /// Write a recording as CSV
     Play(play::Args),
     /// Show and change a board's settings
     Config(config::Args),
     /// Calibrate a sensor or the wearer's muscles, step by step
     Calibrate(calibrate::Args),
-    /// Print channels, settings or wire messages as Markdown tables
+    /// Print channels and settings as Markdown tables, wire messages as JSON
     #[command(after_help = "Examples:\n  tenax tables wiring | less\n  tenax tables settings > settings.md")]
     Tables {
         #[arg(value_enum)]
@@ -54,7 +54,7 @@ enum Table {
     Wiring,
     /// Every setting with number, unit, range, default and meaning
     Settings,
-    /// Every message and type of the serial line with its fields
+    /// Every message and type of the serial line with its fields, as JSON
     Wire,
 }
 
@@ -76,7 +76,7 @@ fn print(table: Table) -> anyhow::Result<ExitCode> {
     let page = match table {
         Table::Wiring => tables::wiring(),
         Table::Settings => tables::settings(),
-        Table::Wire => tables::wire()?,
+        Table::Wire => include_str!("../../python/tenax/wire.json").to_owned(),
     };
     out::print(format_args!("{page}"))?;
     Ok(ExitCode::SUCCESS)

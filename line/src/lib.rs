@@ -5,6 +5,5 @@
 
 pub mod cli;
 pub mod guide;
-pub mod monitor;
 pub mod tables;
 pub mod web;

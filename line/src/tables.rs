@@ -1,6 +1,5 @@
-//! Channels, settings and wire messages as Markdown tables: `tenax tables`.
+//! Channels and settings as Markdown tables: `tenax tables`.
 
-use serde_json::Value;
 use tenax_hal_shim::channel::{
     CHANNELS, Channel, FRAME_HZ, Input, RANK_SWITCH_A, RANK_SWITCH_B, SCAN, SCAN_HZ, SLOW_HZ,
 };
@@ -22,7 +21,6 @@ const SIGNALS: &str = "\
 
 ";
 
-/// Pins and valid voltages of every channel.
 pub fn wiring() -> String {
     let mut page = format!(
         "{SIGNALS}Every pin is read {SCAN_HZ} times a second. Direct pins give {FRAME_HZ} samples a second, switched \
@@ -44,7 +42,6 @@ pub fn wiring() -> String {
     page
 }
 
-/// Place of the channel's pin in the scan.
 fn rank(channel: &Channel) -> usize {
     match channel.input {
         Input::Direct { rank } => rank.into(),
@@ -62,7 +59,6 @@ pub fn input(channel: usize) -> String {
     }
 }
 
-/// Every setting with number, unit, range, default and meaning.
 pub fn settings() -> String {
     let mut page = String::from(
         "# Settings\n\nThe number names the setting on the wire and in flash.\n\n\
@@ -77,44 +73,4 @@ pub fn settings() -> String {
         );
     }
     page
-}
-
-/// Every message and type of the wire with its fields. A test of `hal-shim` writes the file from the types.
-pub fn wire() -> anyhow::Result<String> {
-    let wire: Value = serde_json::from_str(include_str!("../../python/tenax/wire.json"))?;
-    let types = wire["types"].as_object().into_iter().flatten();
-    let mut page = format!("# Wire\n\nVersion {}, schema `{}`.\n", wire["version"], text(&wire["schema"]));
-    for (name, of) in types {
-        page += &match of["enum"].as_array() {
-            Some(variants) => {
-                let rows = (0..).zip(variants).map(|(number, variant): (u32, _)| {
-                    format!("| {number} | `{}` | {} |\n", text(&variant[0]), fields(&variant[1]))
-                });
-                let rows: String = rows.collect();
-                format!("\n## {name}\n\n| number | `{name}` | fields |\n|---|---|---|\n{rows}")
-            }
-            None => format!("\n## {name}\n\n{}\n", fields(&of["struct"])),
-        };
-    }
-    Ok(page)
-}
-
-fn text(value: &Value) -> &str {
-    value.as_str().unwrap_or_default()
-}
-
-fn fields(all: &Value) -> String {
-    let field = |field: &Value| format!("`{}: {}`", text(&field[0]), kind(&field[1]));
-    all.as_array().into_iter().flatten().map(field).collect::<Vec<_>>().join(", ")
-}
-
-/// A field's type: a name, or `["opt", T]`, `["vec", T]`, `["arr", N, T]`, `["tuple", [T, ...]]`.
-fn kind(of: &Value) -> String {
-    match of.as_array().map(Vec::as_slice) {
-        Some([form, of]) if form == "opt" => format!("option {}", kind(of)),
-        Some([form, of]) if form == "vec" => format!("list {}", kind(of)),
-        Some([_, Value::Number(length), of]) => format!("[{length}] {}", kind(of)),
-        Some([_, Value::Array(all)]) => format!("({})", all.iter().map(kind).collect::<Vec<_>>().join(", ")),
-        _ => text(of).to_owned(),
-    }
 }

@@ -1,7 +1,7 @@
 //! The page of `tenax monitor`, in a browser of this machine.
 //!
-//! The page is one file without a build step. Changes come as server-sent events, at most twenty a second. Only this machine is served, and
-//! only pages of this address may ask: a page of another site in the same browser may not.
+//! Changes come as server-sent events, at most twenty a second. Only this machine is served, and only pages of this address may ask: a page
+//! of another site in the same browser may not.
 
 pub mod source;
 pub mod view;
@@ -28,9 +28,8 @@ const EVENT_EVERY: Duration = Duration::from_millis(50);
 /// Longest line for the bench or the player, bytes.
 const ACT_MAX: usize = 40;
 
-/// What all connections share.
-#[derive(Clone)]
-struct Shared {
+pub struct Web {
+    server: Server,
     view: Arc<Mutex<View>>,
     commands: Sender<Down>,
     /// Lines for the scene's bench or the player: never a command of the board's line.
@@ -39,9 +38,8 @@ struct Shared {
     port: u16,
 }
 
-pub struct Web {
-    server: Server,
-    shared: Shared,
+fn lock(view: &Mutex<View>) -> MutexGuard<'_, View> {
+    view.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 impl Web {
@@ -54,34 +52,28 @@ impl Web {
         let (commands, waiting) = channel();
         let (sender, news) = channel();
         let view = Arc::<Mutex<View>>::default();
+        lock(&view).tell(json!({ "place": line.to_string(), "missed": 0, "bad_frames": 0 }));
         let bench = source::start(line, truth, waiting, sender);
-        let shared = Shared { view, commands, bench, control, port };
-        shared.view().tell(json!({ "place": line.to_string(), "missed": 0, "bad_frames": 0 }));
-        let own = shared.clone();
-        thread::spawn(move || news.into_iter().for_each(|news| own.view().take(news)));
-        Ok(Self { server, shared })
+        let own = Arc::clone(&view);
+        thread::spawn(move || news.into_iter().for_each(|news| lock(&own).take(news)));
+        Ok(Self { server, view, commands, bench, control, port })
     }
 
-    /// Address of the page.
     pub fn place(&self) -> String {
-        format!("http://127.0.0.1:{}/", self.shared.port)
+        format!("http://127.0.0.1:{}/", self.port)
     }
 
-    /// Serves the page until the process ends.
     pub fn serve(&self) {
-        for request in self.server.incoming_requests() {
-            let shared = self.shared.clone();
-            thread::spawn(move || {
+        thread::scope(|scope| {
+            for request in self.server.incoming_requests() {
                 // A client that leaves is no error.
-                let _left = shared.answer(request);
-            });
-        }
+                scope.spawn(|| drop(self.answer(request)));
+            }
+        });
     }
-}
 
-impl Shared {
     fn view(&self) -> MutexGuard<'_, View> {
-        self.view.lock().unwrap_or_else(PoisonError::into_inner)
+        lock(&self.view)
     }
 
     /// Whether a page of this address sent the request.
@@ -126,39 +118,32 @@ impl Shared {
 
     /// Carries out a request of the page, if that is allowed: status and text of the answer.
     fn post(&self, path: &str) -> (u16, String) {
-        let answer = |status, text: &str| (status, text.to_owned());
         if let Some(words) = path.strip_prefix("/selftest/") {
             let words: Vec<String> = words.split('/').map(str::to_owned).collect();
             return match self.view().selftest(&words) {
-                Ok(()) => answer(202, "done"),
+                Ok(()) => (202, "done".to_owned()),
                 Err(why) => (409, format!("{why:#}")),
             };
         }
-        if let Some(control) = words(path, "/play/") {
-            return match self.bench.send(control) {
-                Ok(()) => answer(202, "done"),
-                Err(_) => answer(404, "this is no recording"),
-            };
-        }
-        let (act, command) = (words(path, "/bench/"), command(path));
-        if act.is_none() && command.is_none() {
-            return answer(404, "no such command");
-        }
-        if !self.control {
-            return answer(403, "read only: start with --control to change anything");
-        }
-        let sent = match (act, command) {
-            (Some(act), _) => {
+        let (status, text) = match (words(path, "/play/"), words(path, "/bench/"), command(path)) {
+            (Some(control), ..) => match self.bench.send(control) {
+                Ok(()) => (202, "done"),
+                Err(_) => (404, "this is no recording"),
+            },
+            (_, None, None) => (404, "no such command"),
+            _ if !self.control => (403, "read only: start with --control to change anything"),
+            (_, Some(act), _) => {
                 let mut view = self.view();
                 if !view.state().get("bench").is_some_and(Value::is_array) {
-                    return answer(404, "no bench: only a served scene has one, where --truth says");
+                    (404, "no bench: only a served scene has one, where --truth says")
+                } else {
+                    view.say(&format!("at the bench: {act}"));
+                    sent(self.bench.send(act).is_ok())
                 }
-                view.say(&format!("at the bench: {act}"));
-                self.bench.send(act).is_ok()
             }
-            (None, command) => command.is_some_and(|command| self.commands.send(command).is_ok()),
+            (.., Some(command)) => sent(self.commands.send(command).is_ok()),
         };
-        if sent { answer(202, "sent") } else { answer(503, "there is no line") }
+        (status, text.to_owned())
     }
 
     /// Sends the state and its changes, for as long as the page is open.
@@ -176,6 +161,10 @@ impl Shared {
         }
         Ok(())
     }
+}
+
+const fn sent(is_sent: bool) -> (u16, &'static str) {
+    if is_sent { (202, "sent") } else { (503, "there is no line") }
 }
 
 /// The line for the bench or the player in a path: `/bench/tap/pvdf_3`, `/play/+5`.

@@ -4,10 +4,12 @@ use std::fs;
 use std::io::{Cursor, ErrorKind, Read};
 use std::process::Stdio;
 
+use rand::rngs::ChaCha8Rng;
+use rand::{RngExt, SeedableRng};
 use serialport::{SerialPort, TTYPort};
 use tenax_frames::link::{Client, Counts, Line};
 use tenax_hal_shim::wire::{Counters, FRAME_MAX, Up, encode};
-use tenax_line::monitor;
+use tenax_line::cli::monitor;
 
 use crate::serving::{command, tenax};
 
@@ -18,17 +20,9 @@ fn frame(sequence: u16) -> Vec<u8> {
 
 #[test]
 fn gaps_and_random_bytes_are_named_and_survived() {
-    // xorshift
-    let mut state = 0x2545_F491_4F6C_DD1D_u64;
-    let noise = std::iter::repeat_with(|| {
-        state ^= state << 13;
-        state ^= state >> 7;
-        state ^= state << 17;
-        state as u8
-    });
-    let mut bytes = [&frame(0)[5..], &frame(1), &frame(2), &frame(4)].concat();
-    bytes.extend(noise.take(1 << 20).chain([0]));
-    bytes.extend(frame(5));
+    let mut noise = vec![0; 1 << 20];
+    ChaCha8Rng::seed_from_u64(1).fill(&mut noise[..]);
+    let bytes = [&frame(0)[5..], &frame(1), &frame(2), &frame(4), &noise, &[0], &frame(5)].concat();
     let up = Box::new(Cursor::new(bytes));
     let (mut client, mut out) = (Client::from(Line { up, down: None }), Vec::new());
     assert_eq!(monitor::watch(&mut client, &mut out).unwrap().kind(), ErrorKind::UnexpectedEof);
@@ -45,11 +39,11 @@ fn what_is_no_boards_line_is_neither_played_nor_watched() {
     let folder = tempfile::tempdir().unwrap();
     let (empty, random) = (folder.path().join("empty.bin"), folder.path().join("random.bin"));
     fs::write(&empty, "").unwrap();
-    let bytes = (0..100_000_u32).map(|n| (n.wrapping_mul(2_654_435_761) >> 13) as u8);
-    fs::write(&random, bytes.collect::<Vec<u8>>()).unwrap();
+    let mut bytes = vec![0; 100_000];
+    ChaCha8Rng::seed_from_u64(2).fill(&mut bytes[..]);
+    fs::write(&random, bytes).unwrap();
     for file in [empty, random] {
-        for args in
-            [&["play", "--serve-tcp", "0"][..], &["monitor", "--file"], &["monitor", "--plain", "--file"]]
+        for args in [&["play", "--csv", "out"][..], &["monitor", "--file"], &["monitor", "--plain", "--file"]]
         {
             let (done, _, said) = tenax(&[args, &[file.to_str().unwrap()]].concat());
             assert!(

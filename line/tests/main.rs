@@ -3,7 +3,6 @@
 //! One program for all of them: most wait for real time to go by, so that two at once take no longer than one.
 #![cfg(unix)]
 
-mod browser;
 mod calibrate;
 mod config;
 mod lines;

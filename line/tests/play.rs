@@ -1,42 +1,12 @@
-//! A recording is played from any second, by the command and on the page.
+//! A recording is played on the page from any second.
 
-use std::io::{BufRead, BufReader, Read};
-use std::process::Stdio;
+use std::io::Read;
 use std::time::{Duration, Instant};
 
 use serde_json::Value;
-use tenax_frames::link::{Client, Target};
-use tenax_hal_shim::wire::Up;
 
 use crate::page::Web;
 use crate::recording::{line, record};
-use crate::serving::command;
-
-#[test]
-fn a_recording_is_played_from_a_second_and_again() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("glass.mcap");
-    record(&path, &line("glass", false));
-    let args =
-        ["play", "--serve-tcp", "0", "--from", "50", "--loop", "--speed", "20", path.to_str().unwrap()];
-    let mut play = command(&args).stderr(Stdio::piped()).spawn().unwrap();
-    let mut said = String::new();
-    BufReader::new(play.stderr.take().unwrap()).read_line(&mut said).unwrap();
-    let target: Target = said.trim().strip_prefix("serving on ").unwrap().parse().unwrap();
-    let mut client = Client::open(&target).unwrap();
-    // Seconds of the recording.
-    let mut hear = || loop {
-        if let Some(heard) = client.next_message().unwrap()
-            && let Up::Slow(slow) = heard.received.message
-        {
-            return (slow.frame + 1) / 2_000;
-        }
-    };
-    assert_eq!(hear(), 50);
-    while hear() >= 50 {}
-    play.kill().unwrap();
-    play.wait().unwrap();
-}
 
 #[test]
 fn a_recording_is_scrubbed_and_paused_and_its_settings_are_saved_in_the_page() {

@@ -10,19 +10,10 @@ fn package() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().join("python")
 }
 
-/// Python with the package.
 fn python() -> Command {
     let mut python = Command::new(std::env::var_os("TENAX_PYTHON").unwrap_or_else(|| "python3".into()));
     python.env("PYTHONPATH", package()).env("PYTHONDONTWRITEBYTECODE", "1");
     python
-}
-
-#[test]
-#[cfg_attr(not(python), ignore = "no python3 here")]
-fn every_golden_frame_is_decoded() {
-    let args = ["-m", "unittest", "discover", "-s", "tests"];
-    let ran = python().args(args).current_dir(package()).output().unwrap();
-    assert!(ran.status.success(), "{}", String::from_utf8_lossy(&ran.stderr));
 }
 
 const VISIT: &str = r"
@@ -58,7 +49,6 @@ fn it_reads_sets_and_streams_a_served_board() {
     served.end();
 }
 
-/// The example on a served board and on a captured line.
 #[test]
 #[cfg_attr(not(python), ignore = "no python3 here")]
 fn the_example_runs_live_and_offline() {

@@ -1,11 +1,9 @@
-//! The page's view of a board that goes away and comes back, of garbage and of another version: on real pseudo-terminals and
-//! sockets.
+//! The page's view of a board that goes away and comes back, of garbage and of another version.
 //!
-//! A program of its own: whatever another test starts would inherit these pseudo-terminals and pass for their holder.
+//! A program of its own: what another test starts would inherit the pseudo-terminals and pass for their holder.
 #![cfg(unix)]
 
 use std::io::Write;
-use std::net::TcpListener;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -65,41 +63,7 @@ fn text<'a>(view: &'a View, key: &str) -> Option<&'a str> {
 }
 
 #[test]
-fn a_board_that_is_served_again_is_watched_again() {
-    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
-    let address = listener.local_addr().unwrap();
-    let mut watch = Watch::of(&format!("tcp:{address}"));
-    let serve = |listener: &TcpListener, sequence| {
-        let (mut stream, _) = listener.accept().unwrap();
-        stream.write_all(&frame(sequence)).unwrap();
-        stream
-    };
-    let stream = serve(&listener, 7);
-    watch.until("the first message", |view| view.counts.messages == 1);
-    drop((stream, listener));
-    watch.until("gone", |view| text(view, "gone").is_some());
-    // Long enough for it to have been refused.
-    thread::sleep(Duration::from_millis(1_200));
-    let listener = TcpListener::bind(address).unwrap();
-    let mut stream = serve(&listener, 0);
-    watch.until("back", |view| text(view, "gone").is_none() && view.counts.messages == 1);
-
-    // Garbage is counted, and what comes after it is heard.
-    stream.write_all(&[&[0x55; 2_000][..], &[0], &frame(1)].concat()).unwrap();
-    watch.until("the garbage", |view| {
-        (view.counts.missed, view.counts.bad_frames, view.counts.messages) == (0, 1, 2)
-    });
-    stream.write_all(&foreign()).unwrap();
-    let said = format!("of version {}, and this tool speaks {VERSION}", VERSION + 1);
-    let is_foreign = |view: &View| text(view, "other_version").is_some_and(|own| own.starts_with(&said));
-    watch.until(&said, is_foreign);
-    // It was flashed anew.
-    stream.write_all(&frame(2)).unwrap();
-    watch.until("this version again", |view| text(view, "other_version").is_none());
-}
-
-#[test]
-fn a_board_that_is_unplugged_and_plugged_in_again_is_watched_again() {
+fn a_board_that_is_unplugged_and_plugged_in_again_or_speaks_another_version_is_watched_again() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path().join("board");
     let plug = || {
@@ -120,6 +84,16 @@ fn a_board_that_is_unplugged_and_plugged_in_again_is_watched_again() {
     let (mut board, port) = plug();
     let mut watch = Watch::of(at.to_str().unwrap());
     say(&mut board, &mut watch);
+    // Garbage is counted, and what comes after it is heard.
+    let before = watch.view.counts;
+    board.write_all(&[&[0x55; 2_000][..], &[0]].concat()).unwrap();
+    board.write_all(&foreign()).unwrap();
+    let said = format!("of version {}, and this tool speaks {VERSION}", VERSION + 1);
+    watch.until(&said, |view| text(view, "other_version").is_some_and(|own| own.starts_with(&said)));
+    assert_eq!(watch.view.counts.bad_frames, before.bad_frames + 2);
+    // It was flashed anew.
+    say(&mut board, &mut watch);
+    watch.until("this version again", |view| text(view, "other_version").is_none());
     // The cable is pulled: the port is gone, and so is its name.
     std::fs::remove_file(&at).unwrap();
     drop((board, port));

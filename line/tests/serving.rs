@@ -12,7 +12,6 @@ use tenax_sim::session::{Board, scene_alone};
 
 pub const BENCH: &str = include_str!("../../scenes/parts/bench.toml");
 
-/// The `tenax` command with these arguments.
 pub fn command(args: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_tenax"));
     command.args(args);
@@ -68,12 +67,10 @@ impl Serving {
         Self { place, truth, person, ended, run }
     }
 
-    /// Does this at the bench.
     pub fn tell(&self, line: &str) {
         act(&self.person, line);
     }
 
-    /// Ends the run now.
     pub fn end(self) -> Tally {
         self.ended.store(true, Relaxed);
         self.person.reset();

@@ -21,13 +21,10 @@ fn pins(text: &str) -> BTreeSet<String> {
 }
 
 #[test]
-fn the_picture_has_the_tables_pins_and_every_message_its_row() {
+fn the_picture_has_the_tables_pins() {
     let picture = pins(include_str!("../../docs/figures/wiring.svg"));
     assert_eq!(picture, pins(&tables::wiring()));
     assert!(picture.len() > 20);
-    let wire = tables::wire().unwrap();
-    assert!(wire.contains("| 1 | `Slow` | `frame: u32`, `ticks: [25] tick`"), "{wire}");
-    assert!(wire.contains("`evidence: list (DetectorId, Evidence)`"), "{wire}");
 }
 
 /// Topics and, behind the mark, fields of a recording of every stream.

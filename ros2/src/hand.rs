@@ -20,13 +20,12 @@ const CLOSES_FOR: u32 = 5 * SLOW_HZ;
 const OPENS_FOR: u32 = 2 * SLOW_HZ;
 /// How long it opens on after nothing is felt any more, slow frames.
 const OPENS_ON_FOR: u32 = SLOW_HZ / 4;
-/// What is felt as nothing, mN.
+/// Load below which nothing is felt, mN.
 const NOTHING_MN: i32 = 300;
 /// How hard it opens, and the least with which a motor moves, per mille.
 const OPEN_PERMILLE: u16 = 400;
 const CLOSE_PERMILLE_MIN: u16 = 150;
 
-/// Head of a message of a hand.
 pub fn header(hand: &str, at_ns: u64) -> Header {
     Header { stamp: Time::of_ns(at_ns), frame_id: hand.to_owned() }
 }
@@ -35,7 +34,6 @@ fn newtons(mn: i32) -> f64 {
     f64::from(mn) / 1e3
 }
 
-/// The grip as a joint's effort.
 pub fn joint_state(header: Header, slow: &Slow) -> JointState {
     let effort = slow.forces.iter().map(|forces| newtons(forces.load_mn)).collect();
     let name = vec![format!("{}_grip", header.frame_id)];
@@ -85,25 +83,21 @@ pub fn tactile(header: Header, slow: &Slow, senses: Option<&Senses>) -> Tactile 
     }
 }
 
-/// The ceiling of forces that a board says of itself, mN.
 pub fn ceiling_mn(about: &About) -> Option<i32> {
     about.settings.iter().find(|setting| setting.id == FORCE_CEILING).map(|setting| setting.value)
 }
 
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Health {
-    /// Why its line is not open.
     pub gone: Option<String>,
     pub command: String,
     pub about: Option<About>,
     pub counters: Option<Counters>,
-    /// Messages missing on the line, and frames that were none.
     pub missed: u64,
     pub bad_frames: u64,
 }
 
 impl Health {
-    /// As ROS says it.
     pub fn diagnostics(&self, hand: &str, at_ns: u64) -> DiagnosticArray {
         let counters = self.counters.unwrap_or_default();
         let lossy = counters.frames_lost > 0 || counters.ticks_late > 0 || self.missed > 0;
@@ -113,21 +107,21 @@ impl Health {
             None if lossy => (1, "frames were lost, late or missed".to_owned()),
             None => (0, "running".to_owned()),
         };
-        let value = |key: &str, value: String| KeyValue { key: key.to_owned(), value };
+        let values = [
+            ("last command", self.command.clone()),
+            ("frames lost", counters.frames_lost.to_string()),
+            ("ticks late", counters.ticks_late.to_string()),
+            ("messages missed", self.missed.to_string()),
+            ("bad frames", self.bad_frames.to_string()),
+            ("control per mille", counters.control_permille.to_string()),
+        ];
         let chip = self.about.as_ref().map_or([0; 3], |about| about.identity.chip);
         let status = DiagnosticStatus {
             level,
             name: format!("{hand}: fingertip"),
             message,
             hardware_id: chip.map(|part| format!("{part:08x}")).concat(),
-            values: vec![
-                value("last command", self.command.clone()),
-                value("frames lost", counters.frames_lost.to_string()),
-                value("ticks late", counters.ticks_late.to_string()),
-                value("messages missed", self.missed.to_string()),
-                value("bad frames", self.bad_frames.to_string()),
-                value("control per mille", counters.control_permille.to_string()),
-            ],
+            values: values.map(|(key, value)| KeyValue { key: key.to_owned(), value }).into(),
         };
         DiagnosticArray { header: header("", at_ns), status: vec![status] }
     }
@@ -135,9 +129,7 @@ impl Health {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Step {
-    /// This goes down the line.
     Send(Down),
-    /// It is over, and why.
     Over(&'static str),
 }
 

@@ -4,17 +4,11 @@ use xxhash_rust::xxh3::xxh3_128;
 
 use crate::message::Message;
 
-/// Bytes of an entity's id.
 pub const GID: usize = 16;
-/// Bytes of an attachment: number, time, and the id after its length.
-const ATTACHMENT: usize = 8 + 8 + 1 + GID;
 
-/// A node: one of a session.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Node {
-    /// ROS_DOMAIN_ID.
     pub domain: u32,
-    /// The session's zenoh id, as zenoh writes it.
     pub session: String,
     pub id: u32,
     pub name: String,
@@ -22,9 +16,7 @@ pub struct Node {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// It publishes it.
     Publisher,
-    /// It listens to it.
     Subscription,
 }
 
@@ -34,7 +26,6 @@ pub fn topic<M: Message>(domain: u32, name: &str) -> String {
 }
 
 impl Node {
-    /// The token that it lives.
     pub fn token(&self) -> String {
         let Self { domain, session, id, name } = self;
         format!("@ros2_lv/{domain}/{session}/{id}/{id}/NN/%/%/{name}")
@@ -63,29 +54,16 @@ pub fn gid(token: &str) -> [u8; GID] {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Attachment {
-    /// From 1 on.
     pub sequence: i64,
     pub time_ns: i64,
     pub gid: [u8; GID],
 }
 
 impl Attachment {
+    /// Number, time, and the id after its length.
     pub fn bytes(&self) -> Vec<u8> {
         let (number, time) = (self.sequence.to_le_bytes(), self.time_ns.to_le_bytes());
         [&number[..], &time, &[GID as u8], &self.gid].concat()
-    }
-
-    /// That of these bytes, if they are one.
-    pub fn of(bytes: &[u8]) -> Option<Self> {
-        let bytes: &[u8; ATTACHMENT] = bytes.try_into().ok()?;
-        let (sequence, rest) = bytes.split_first_chunk::<8>()?;
-        let (time, rest) = rest.split_first_chunk::<8>()?;
-        let (&length, gid) = rest.split_first()?;
-        (usize::from(length) == GID).then_some(Self {
-            sequence: i64::from_le_bytes(*sequence),
-            time_ns: i64::from_le_bytes(*time),
-            gid: gid.try_into().ok()?,
-        })
     }
 }
 

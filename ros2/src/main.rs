@@ -95,12 +95,8 @@ fn run(args: &Args) -> anyhow::Result<()> {
     }
     let set = || std::env::var("ROS_DOMAIN_ID").ok()?.parse().ok();
     let domain = args.domain.or_else(set).unwrap_or(0);
-    let place = if args.router_here {
-        Place::RouterHere(args.router.clone())
-    } else {
-        Place::At(args.router.clone())
-    };
-    let session = open(&place)?;
+    let place = if args.router_here { Place::RouterHere } else { Place::At };
+    let session = open(&place(args.router.clone()))?;
     let stop = Arc::new(AtomicBool::new(false));
     for signal in [SIGINT, SIGTERM] {
         signal_hook::flag::register(signal, Arc::clone(&stop)).context("cannot listen to Ctrl-C")?;
@@ -109,22 +105,16 @@ fn run(args: &Args) -> anyhow::Result<()> {
         eprintln!("/{name}: {line}");
     }
     eprintln!("in ROS 2's domain {} at {}; Ctrl-C ends it", domain, args.router);
-    let (session_of_all, stop_of_all) = (&session, &stop);
+    let run = &|(id, hand): (u32, &Hand)| {
+        let ended = bridge(&session, domain, id, hand, &stop);
+        // The session is all hands': none goes on without it.
+        stop.store(true, Ordering::Relaxed);
+        ended
+    };
     let ended: anyhow::Result<()> = thread::scope(|scope| {
-        let threads: Vec<_> = (0..)
-            .zip(&hands)
-            .map(|(id, hand)| {
-                scope.spawn(move || {
-                    let ended = bridge(session_of_all, domain, id, hand, stop_of_all);
-                    // The session is all hands': none goes on without it.
-                    stop_of_all.store(true, Ordering::Relaxed);
-                    ended
-                })
-            })
-            .collect();
-        threads
-            .into_iter()
-            .try_for_each(|thread| thread.join().unwrap_or_else(|_| bail!("a hand's thread panicked")))
+        let threads: Vec<_> = (0..).zip(&hands).map(|one| scope.spawn(move || run(one))).collect();
+        let mut threads = threads.into_iter();
+        threads.try_for_each(|thread| thread.join().unwrap_or_else(|_| bail!("a hand's thread panicked")))
     });
     let _closed = session.close().wait();
     ended

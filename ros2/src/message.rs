@@ -5,7 +5,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::describe::{Definition, hash};
 
-/// Every type, with those that they are made of.
 pub const DEFINITIONS: [Definition; 10] = [
     Definition { name: "builtin_interfaces/msg/Time", text: "int32 sec\nuint32 nanosec" },
     Definition { name: "std_msgs/msg/Header", text: "builtin_interfaces/Time stamp\nstring frame_id" },
@@ -25,7 +24,6 @@ pub const DEFINITIONS: [Definition; 10] = [
     Definition { name: Margin::NAME, text: include_str!("../tenax_msgs/msg/Margin.msg") },
 ];
 
-/// A message that is published or heard.
 pub trait Message: Serialize + DeserializeOwned {
     const NAME: &'static str;
 
@@ -39,7 +37,7 @@ pub trait Message: Serialize + DeserializeOwned {
     }
 }
 
-/// `builtin_interfaces/msg/Time`: since 1970.
+/// Since 1970.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Time {
     pub sec: i32,
@@ -55,22 +53,18 @@ impl Time {
     }
 }
 
-/// `std_msgs/msg/Header`.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Header {
     pub stamp: Time,
-    /// The hand.
     pub frame_id: String,
 }
 
-/// `sensor_msgs/msg/JointState`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct JointState {
     pub header: Header,
     pub name: Vec<String>,
     /// Empty: a fingertip's opening is calibrated to no length.
     pub position: Vec<f64>,
-    /// Empty.
     pub velocity: Vec<f64>,
     /// Grip force, N. Empty while the force sensor gives no number.
     pub effort: Vec<f64>,
@@ -80,7 +74,6 @@ impl Message for JointState {
     const NAME: &'static str = "sensor_msgs/msg/JointState";
 }
 
-/// `control_msgs/msg/GripperCommand`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct GripperCommand {
     /// Gap, m: 0 closes, more opens.
@@ -93,32 +86,25 @@ impl Message for GripperCommand {
     const NAME: &'static str = "control_msgs/msg/GripperCommand";
 }
 
-/// `diagnostic_msgs/msg/KeyValue`.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct KeyValue {
     pub key: String,
     pub value: String,
 }
 
-/// `diagnostic_msgs/msg/DiagnosticStatus`.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct DiagnosticStatus {
     /// 0 well, 1 warning, 2 error, 3 stale.
     pub level: u8,
     pub name: String,
-    /// In words.
     pub message: String,
-    /// The chip.
     pub hardware_id: String,
-    /// In numbers.
     pub values: Vec<KeyValue>,
 }
 
-/// `diagnostic_msgs/msg/DiagnosticArray`.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct DiagnosticArray {
     pub header: Header,
-    /// One a hand.
     pub status: Vec<DiagnosticStatus>,
 }
 
@@ -126,7 +112,6 @@ impl Message for DiagnosticArray {
     const NAME: &'static str = "diagnostic_msgs/msg/DiagnosticArray";
 }
 
-/// `tenax_msgs/msg/Tactile`: see its .msg.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Tactile {
     pub header: Header,
@@ -142,7 +127,6 @@ impl Message for Tactile {
     const NAME: &'static str = "tenax_msgs/msg/Tactile";
 }
 
-/// `tenax_msgs/msg/Slip`: see its .msg.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[allow(clippy::struct_excessive_bools, reason = "a message")]
 pub struct Slip {
@@ -161,7 +145,6 @@ impl Message for Slip {
     const NAME: &'static str = "tenax_msgs/msg/Slip";
 }
 
-/// `tenax_msgs/msg/Margin`: see its .msg.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Margin {
     pub header: Header,

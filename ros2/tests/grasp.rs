@@ -12,65 +12,59 @@ fn grasp(position: f64, max_effort: f64) -> Grasp {
     Grasp::of(&GripperCommand { position, max_effort }, CEILING_MN).unwrap()
 }
 
-fn duty(step: Step) -> u16 {
-    match step {
-        Step::Send(Down::Drive { drive: MotorDrive::Close(duty), hold_ms: 25 }) => duty.as_per_mille(),
-        other => panic!("{other:?} does not close for 25 ms"),
-    }
+/// Steps that drive while the load is this, mN.
+fn drives(grasp: &mut Grasp, load_mn: i32) -> usize {
+    (0..10_000).take_while(|_| matches!(grasp.step(Some(load_mn)), Step::Send(Down::Drive { .. }))).count()
 }
 
 #[test]
 fn it_closes_to_the_force_and_drives_no_further() {
-    let mut close = grasp(0.0, 5.0);
-    assert_eq!(duty(close.step(Some(0))), 350);
-    assert_eq!(duty(close.step(Some(4_999))), 350);
-    assert_eq!(close.step(Some(5_000)), Step::Over("the force is reached"));
-}
-
-#[test]
-fn no_effort_asked_for_passes_the_ceiling() {
-    for effort in [20.0, 21.0, 1e9, 1e300] {
+    for (effort, per_mille, mn) in [
+        (5.0, 350, 5_000),
+        (20.0, 1_000, 20_000),
+        (21.0, 1_000, 20_000),
+        (1e9, 1_000, 20_000),
+        (1e300, 1_000, 20_000),
+    ] {
         let mut close = grasp(0.0, effort);
-        assert_eq!(duty(close.step(Some(19_999))), 1_000);
-        assert_eq!(close.step(Some(20_000)), Step::Over("the force is reached"), "{effort} N");
+        for load_mn in [0, mn - 1] {
+            let Step::Send(Down::Drive { drive: MotorDrive::Close(duty), hold_ms: 25 }) =
+                close.step(Some(load_mn))
+            else {
+                panic!("{effort} N does not close for 25 ms");
+            };
+            assert_eq!(duty.as_per_mille(), per_mille);
+        }
+        assert_eq!(close.step(Some(mn)), Step::Over("the force is reached"), "{effort} N");
     }
 }
 
 #[test]
-fn without_a_force_or_for_ever_nothing_closes() {
+fn without_a_force_or_for_ever_nothing_drives_and_it_opens_a_little_on() {
     assert!(matches!(grasp(0.0, 5.0).step(None), Step::Over(_)));
-    let mut close = grasp(0.0, 5.0);
-    let steps = (0..10_000).take_while(|_| matches!(close.step(Some(0)), Step::Send(_))).count();
-    assert_eq!(steps, 400, "5 s");
+    assert_eq!(drives(&mut grasp(0.0, 5.0), 0), 400, "5 s");
     let mut open = grasp(0.05, 0.0);
-    let steps = (0..10_000).take_while(|_| matches!(open.step(Some(5_000)), Step::Send(_))).count();
-    assert_eq!(steps, 160, "2 s");
+    let step = open.step(Some(5_000));
+    assert!(matches!(step, Step::Send(Down::Drive { drive: MotorDrive::Open(_), .. })), "{step:?}");
+    assert_eq!(drives(&mut open, 5_000), 159, "2 s");
+    assert_eq!(drives(&mut grasp(0.05, 3.0), 0), 20);
 }
 
 #[test]
-fn it_opens_until_nothing_is_felt_and_a_little_on() {
-    let mut open = grasp(0.05, 3.0);
-    for _ in 0..50 {
-        assert!(matches!(open.step(Some(5_000)), Step::Send(Down::Drive { drive: MotorDrive::Open(_), .. })));
-    }
-    let on = (0..100).take_while(|_| matches!(open.step(Some(0)), Step::Send(_))).count();
-    assert_eq!(on, 20);
-}
-
-#[test]
-fn no_effort_is_the_boards_gentle_grasp_once() {
+fn no_effort_is_the_boards_gentle_grasp_once_and_what_is_no_command_is_refused() {
     let mut gentle = grasp(0.0, 0.0);
     assert_eq!(gentle.step(Some(0)), Step::Send(Down::Begin(Behaviour::GentleGrasp)));
     assert!(matches!(gentle.step(Some(0)), Step::Over(_)));
-}
-
-#[test]
-fn what_is_no_command_is_refused() {
-    let of = |position, max_effort, ceiling| Grasp::of(&GripperCommand { position, max_effort }, ceiling);
-    for (position, effort) in [(f64::NAN, 1.0), (0.0, f64::INFINITY), (-0.1, 1.0), (0.0, -1.0)] {
-        assert!(of(position, effort, CEILING_MN).is_err(), "{position} {effort}");
-    }
-    for ceiling in [None, Some(0), Some(-1)] {
-        assert!(of(0.0, 1.0, ceiling).is_err(), "{ceiling:?}");
+    for (position, max_effort, ceiling) in [
+        (f64::NAN, 1.0, CEILING_MN),
+        (0.0, f64::INFINITY, CEILING_MN),
+        (-0.1, 1.0, CEILING_MN),
+        (0.0, -1.0, CEILING_MN),
+        (0.0, 1.0, None),
+        (0.0, 1.0, Some(0)),
+        (0.0, 1.0, Some(-1)),
+    ] {
+        let command = GripperCommand { position, max_effort };
+        assert!(Grasp::of(&command, ceiling).is_err(), "{command:?} {ceiling:?}");
     }
 }

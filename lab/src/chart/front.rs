@@ -1,4 +1,4 @@
-//! `tenax chart front`: what a grip pays in newtons for what it saves in millimetres, and where the closed loop breaks.
+//! `tenax chart front`: what a grip pays in newtons for what it saves in millimetres.
 
 use plotters::style::RGBColor;
 use rayon::prelude::*;

@@ -1,15 +1,11 @@
 //! The charts of `tenax chart`, one module each; `docs/` has the pages that show them.
 
-pub mod delay;
 pub mod emg;
 pub mod front;
-pub mod loads;
-pub mod photoelastic;
 pub mod table;
-pub mod vision;
 
 use tenax_sim::plot::sheet::Sheet;
-pub use tenax_sim::plot::sheet::draw::svg;
+use tenax_sim::plot::sheet::draw::svg;
 
 /// A chart and the numbers in it.
 #[derive(Clone, Debug)]

@@ -20,7 +20,6 @@ const GOALS: [Goal; 3] = [
     Goal { what: "array: false alarms an hour of pouring", goal: 20.0, held: 60.0 },
 ];
 
-/// Fails if a scene cannot be made.
 pub fn bars() -> anyhow::Result<Vec<Bar>> {
     let mut recordings = Dataset::make(PLAN, Some(Part::Test), &|_| {})?.recordings()?;
     recordings.retain(|recording| recording.doing == Doing::Pour);

@@ -16,7 +16,6 @@ use super::{Bar, Verdict};
 const OF_BOUND: f64 = 1.5;
 /// Slid: half the pad, mm. The bound knows when the glass gets wet and does not let it slide at all.
 const SLID_MM: f64 = 9.0;
-/// Load of the core by the ticks, %.
 const LOAD_PERCENT: f64 = 20.0;
 
 /// The bars of one run; those of the image where `image` is the emulated board's ELF file. Fails if the board cannot be run.

@@ -1,9 +1,7 @@
 //! A fingertip that teaches itself slip: the bars of `tenax learn`, on the host's logic.
 
-use tenax_sim::session::Board;
-
 use super::{Bar, Goal, Verdict};
-use crate::learn::report::{Score, of_judges};
+use crate::learn::report::{Score, told};
 use crate::learn::{self, LESSONS, Options};
 
 /// Lead of the network's first word (slip, or a warning of it) over vision, s, mean (Tada 2006: 0.89 s less 0.73 s).
@@ -13,17 +11,16 @@ const POUR_PART: f64 = 0.5;
 /// Minutes of holding. The goal's three hours would take two of CI's fifteen minutes.
 const MINUTES: u64 = 40;
 
-/// Fails if a scene cannot be made.
 pub fn bars() -> anyhow::Result<Vec<Bar>> {
     let options = Options { minutes: MINUTES, ..Options::default() };
-    let outcome = learn::run(&options, &Board::Host, &|_, _| ())?;
+    let outcome = learn::run(&options, &|_, _| ())?;
     let (score, lead) = (&outcome.score, outcome.score.first.lead());
     let (slip, holding) = (&score.slip, &outcome.holding);
-    let in_3_h = |alarms| 3.0 * holding.per_hour(alarms);
-    let [touch_s, vision_s, bound_s] = of_judges(&outcome.lifts, |run| run.secured_s);
-    let [touch_mm, vision_mm, bound_mm] = of_judges(&outcome.pours, |run| run.distance_mm);
+    let in_3_h = 3.0 * holding.slip.per_hour.max(holding.warning.per_hour);
+    let [touch_s, vision_s, bound_s] = told(&outcome.lifts).map(|own| own.secured_s);
+    let [touch_mm, vision_mm, bound_mm] = told(&outcome.pours).map(|own| own.distance_mm);
     let worst_s = outcome.worst_lead_s().unwrap_or(f64::NAN);
-    let sum = |of: fn(&Score) -> u64| outcome.others.iter().map(|other| of(&other.score)).sum::<u64>();
+    let sum = |of: fn(&Score) -> u64| outcome.others.iter().map(of).sum::<u64>();
     let (missed, trials) = (sum(|score| score.first.missed), sum(|score| score.trials));
     let wrong = sum(|score| score.direction_wrong);
     let goal = |what, goal, held| Goal { what, goal, held };
@@ -62,10 +59,10 @@ pub fn bars() -> anyhow::Result<Vec<Bar>> {
         ),
         Bar::short_of(
             goal("learn: false alarms of slip, and of warnings, in three hours of holding", 0.0, 1.0),
-            in_3_h(holding.slip).max(in_3_h(holding.warning)),
+            in_3_h,
             format_args!(
                 "slip {}, {} of them in micro slip, warnings {}, in {:.2} h with knocks of 50 Hz to 2 kHz, swings, motor noise",
-                holding.slip.count, holding.slip.in_micro_slip, holding.warning.count, holding.hours
+                holding.slip.count, holding.slip.in_micro_slip, holding.warning.count, holding.slip.hours
             ),
         ),
         Bar::unjudged(

@@ -5,7 +5,6 @@ use std::path::Path;
 use super::{Bar, Verdict};
 use crate::evaluate::emg;
 
-/// Fails if a recording cannot be read.
 pub fn bars(folder: &Path) -> anyhow::Result<Vec<Bar>> {
     let promise =
         "people's prosthesis electrodes, same session, medians; the constants were fitted to these people";

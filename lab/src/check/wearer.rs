@@ -9,7 +9,6 @@ use tenax_sim::session::{self, Board};
 
 use super::{Bar, Verdict};
 
-/// Two slow frames, ms.
 const TWO_SLOW_FRAMES_MS: f64 = 25.0;
 
 /// The bars over every scene of the repository, on the host's logic.

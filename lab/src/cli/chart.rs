@@ -6,10 +6,10 @@ use std::process::ExitCode;
 use clap::ValueEnum;
 use tenax_frames::tool::{folder, format::Format, out, progress::with_bar, workspace};
 
-use crate::chart::{Chart, delay, emg, front, loads, photoelastic, table, vision};
+use crate::chart::{Chart, emg, front, table};
 
-/// Recordings beside the checkout.
-const RECORDINGS: &str = "../shared/data";
+/// Recordings of people, beside the checkout.
+const RECORDINGS: &str = "../shared/data/myobock";
 
 /// Draw the charts behind a page of docs/
 #[derive(Debug, clap::Args)]
@@ -17,10 +17,10 @@ pub struct Args {
     /// Subject of the charts
     #[arg(value_enum)]
     subject: Subject,
-    /// Folder for SVG and CSV
+    /// front and emg only: folder for SVG and CSV
     #[arg(long, value_name = "DIR", default_value = "out")]
     out: PathBuf,
-    /// photoelastic and table only: how to print the figures
+    /// table only: how to print the figures
     #[arg(long, value_enum, default_value_t = Format::Text)]
     report: Format,
 }
@@ -28,49 +28,27 @@ pub struct Args {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Subject {
     /// Newtons beyond need against millimetres slid, of each grip: the hand, each detector alone, all but each, no reflex,
-    /// constant grip, the bound; and decision delay by stiffness by gain
+    /// constant grip, the bound
     Front,
     /// Accuracy and latency of intent recognition on recorded people against false motions: the hand and plain control
     Emg,
-    /// Slips caught, false alarms and processor time of each detector, pairs, the hand and plain rivals
+    /// Slips caught, false alarms and processor time of each detector, pairs, the hand and plain rivals, as a report
     Table,
-    /// Force, slip rate and the region in which slip is seen of a photoelastic head
-    Photoelastic,
-    /// Known loads on a recording of a camera behind the skin; drawn sessions of rising difficulty
-    Vision,
 }
 
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
-    let folder = folder::made(&args.out)?;
-    let charts: Vec<Chart> = match args.subject {
-        Subject::Front => vec![
-            with_bar("front", |progress| front::front(progress))?,
-            with_bar("delay", |progress| delay::map(progress))?,
-        ],
-        Subject::Vision => {
-            let table = workspace::root()?.join(RECORDINGS).join("fingervision/loads.csv");
-            vec![
-                with_bar("loads", |progress| loads::chart(&table, progress))?,
-                with_bar("failures", |progress| vision::failures(progress))?,
-            ]
-        }
-        Subject::Emg => vec![emg::chart(&workspace::root()?.join(RECORDINGS).join("myobock"))?],
+    let chart: Chart = match args.subject {
+        Subject::Front => with_bar("front", |progress| front::front(progress))?,
+        Subject::Emg => emg::chart(&workspace::root()?.join(RECORDINGS))?,
         Subject::Table => {
             let costs = table::costs::Costs::measured()?;
             let table = with_bar("table", |progress| table::table(&table::PLANS, &costs, progress))?;
             out::unless_closed(args.report.show(&table))?;
-            vec![table.chart()?]
-        }
-        Subject::Photoelastic => {
-            let (chart, report) = with_bar("photoelastic", |progress| photoelastic::chart(progress))?;
-            out::unless_closed(args.report.show(&report))?;
-            vec![chart]
+            return Ok(ExitCode::SUCCESS);
         }
     };
-    for chart in charts {
-        let path = folder.join(chart.name);
-        super::write(&path.with_extension("svg"), chart.svg.as_bytes())?;
-        super::write(&path.with_extension("csv"), chart.csv.as_bytes())?;
-    }
+    let path = folder::made(&args.out)?.join(chart.name);
+    super::write(&path.with_extension("svg"), chart.svg.as_bytes())?;
+    super::write(&path.with_extension("csv"), chart.csv.as_bytes())?;
     Ok(ExitCode::SUCCESS)
 }

@@ -1,31 +1,24 @@
-//! `tenax learn`: a fingertip teaches itself slip; report and figures.
+//! `tenax learn`: a fingertip teaches itself slip.
 
-use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::{Mutex, PoisonError};
 
 use anyhow::ensure;
-use tenax_frames::tool::{folder, format::Format, out, progress::Progress};
-use tenax_sim::board::agreement::Agreement;
-use tenax_sim::session::Board;
+use tenax_frames::tool::{format::Format, out, progress::Progress};
 
 use crate::learn::report::Report;
-use crate::learn::{self, Options, Outcome, figures};
+use crate::learn::{self, Options};
 
 const EXAMPLES: &str = "\
 Examples:
-  tenax learn                       7 lessons and 50 held-out trials on the emulated board, and everything else: minutes
-  tenax learn --host                the same on the host's build of the logic
-  tenax learn --host --trials 5 --minutes 1 --fingertips 2
+  tenax learn                       7 lessons and 50 held-out trials, and everything else: minutes
+  tenax learn --trials 5 --minutes 1 --fingertips 2
   tenax learn --report json > learn.json";
 
 /// Teach the Hebbian network slip with a camera, and score it
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Args {
-    /// Run the trials on the host's own build of the logic: no image, no emulator
-    #[arg(long)]
-    host: bool,
     /// Number of held-out trials after the seven lessons
     #[arg(long, value_name = "N", default_value_t = Options::default().trials)]
     trials: u64,
@@ -44,9 +37,6 @@ pub struct Args {
     /// How to print the report; lab/src/learn/report.rs lists the keys of json
     #[arg(long, value_enum, default_value_t = Format::Text)]
     report: Format,
-    /// Folder for report and figures
-    #[arg(long, value_name = "DIR", default_value = "out")]
-    out: PathBuf,
 }
 
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
@@ -58,24 +48,9 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     {
         ensure!(count <= MOST, "--{name} {count}: at most {MOST} are allowed");
     }
-    let options = Options { seed, trials, minutes, lifts, fingertips };
-    let folder = folder::made(&args.out)?;
-    let outcome = run(&options, &super::board(args.host)?)?;
-    let report = Report::of(&outcome);
-    out::unless_closed(args.report.show(&report))?;
-    if let Some(agreement) = &outcome.agreement {
-        out::note!("  {:<26}{agreement}", "image and host's logic");
-    }
-    super::write(&folder.join("learn.json"), &serde_json::to_vec_pretty(&report)?)?;
-    super::write(&folder.join("learn-worth.svg"), figures::draw(&outcome)?.as_bytes())?;
-    let agrees = outcome.agreement.as_ref().is_none_or(Agreement::holds);
-    Ok(if agrees { ExitCode::SUCCESS } else { ExitCode::FAILURE })
-}
-
-/// All parts, with a progress line for each.
-fn run(options: &Options, board: &Board) -> anyhow::Result<Outcome> {
     let bar: Mutex<Option<(String, Progress)>> = Mutex::new(None);
-    learn::run(options, board, &|what, part| {
+    let options = Options { seed, trials, minutes, lifts, fingertips };
+    let outcome = learn::run(&options, &|what, part| {
         // A bar that a panicking thread left is still a bar.
         let mut bar = bar.lock().unwrap_or_else(PoisonError::into_inner);
         if bar.as_ref().is_none_or(|(before, _)| before != what) {
@@ -84,5 +59,7 @@ fn run(options: &Options, board: &Board) -> anyhow::Result<Outcome> {
         if let Some((_, progress)) = bar.as_mut() {
             progress.at(part);
         }
-    })
+    })?;
+    out::unless_closed(args.report.show(&Report::of(&outcome)))?;
+    Ok(ExitCode::SUCCESS)
 }

@@ -1,21 +1,20 @@
 //! A fingertip on the host that goes from one world to the next and keeps what it has learned.
 
 use anyhow::Context;
-use tenax_hal_shim::channel::{FRAMES_PER_SLOW_FRAME, PVDF_COUNT, SLOW_HZ};
+use tenax_hal_shim::channel::{FRAMES_PER_SLOW_FRAME, PVDF_COUNT, SCAN_HZ, SCANS_PER_FRAME};
 use tenax_hal_shim::detector::{DetectorId, DetectorSet};
 use tenax_hal_shim::motor::MotorDrive;
-use tenax_hal_shim::wire::{Down, Setting, Slow};
+use tenax_hal_shim::wire::{Down, Setting};
 use tenax_hal_shim::words;
 use tenax_logic::detectors::Said;
 use tenax_logic::fingertip::Fingertip;
+use tenax_logic::hebbian::network::Weight;
 use tenax_logic::hebbian::{self, FingertipNetwork, snapshot};
 use tenax_logic::setting::SettingId;
 use tenax_scene::World;
 use tenax_scene::plant::Plant;
 
-use super::chain::slow_frames;
-use super::control::Control;
-use super::trial::{Setup, Trial, by_network};
+use super::trial::{Setup, Trial};
 use tenax_sim::board::simulated::Ahead;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,24 +32,17 @@ pub enum Judge {
 pub struct Bench {
     fingertip: Fingertip,
     frame: u32,
-    said: Vec<Said>,
 }
 
 impl Default for Bench {
     fn default() -> Self {
-        Self { fingertip: Fingertip::trusting(), frame: 0, said: Vec::new() }
+        Self { fingertip: Fingertip::trusting(), frame: 0 }
     }
 }
 
 impl Bench {
-    /// Goes through a world for so long at most, s. `see` gets every slow frame with its number in this world.
-    pub fn run(
-        &mut self,
-        for_s: f64,
-        mut world: World,
-        judge: Judge,
-        see: &mut dyn FnMut(usize, &Slow, &Self),
-    ) -> World {
+    /// Goes through the whole slow frames of a world.
+    pub fn run(&mut self, mut world: World, judge: Judge) -> Trial {
         self.fingertip.act_on(match judge {
             Judge::Touch => DetectorSet::ALL,
             Judge::Vision => DetectorSet::only(DetectorId::Injected),
@@ -60,51 +52,37 @@ impl Bench {
         let none = Down::Set(Setting { id: SettingId::DetectorsOff.number(), value: 0 });
         // A trusted line may.
         let _ = self.fingertip.command(&none);
-        let mut seen = 0;
+        let mut trial = Trial::default();
         let (mut drive, mut ahead) = (MotorDrive::Coast, Ahead::default());
-        let slow_frames = slow_frames(&world).min((for_s * f64::from(SLOW_HZ)) as usize);
-        for _ in 0..slow_frames * usize::from(FRAMES_PER_SLOW_FRAME) {
-            let (frame_in, commands) = world.frame(self.frame, drive);
+        let frames = (world.duration_s() * f64::from(SCAN_HZ)) as usize / SCANS_PER_FRAME;
+        for _ in 0..frames - frames % usize::from(FRAMES_PER_SLOW_FRAME) {
+            let (frame, commands) = world.frame(self.frame, drive);
             for command in &commands {
                 // A refusal goes back to whoever sent it; there is no line here.
                 let _ = self.fingertip.command(command);
             }
             self.frame = self.frame.wrapping_add(1);
-            let told = match judge {
-                Judge::Touch | Judge::Bound => None,
-                Judge::Vision => Some(world.said().is_some_and(|seen| seen.v1 < 0)),
-            };
-            if let Some(slips) = told {
-                self.fingertip.inject(Said::slip(slips));
+            if judge == Judge::Vision {
+                self.fingertip.inject(Said::slip(world.said().is_some_and(|seen| seen.v1 < 0)));
             }
-            drive = self.fingertip.tick(&frame_in);
+            drive = self.fingertip.tick(&frame);
             if judge == Judge::Bound {
                 drive = ahead.drive(drive, &self.fingertip, world.planned());
             }
-            self.said.push(by_network([self.fingertip.slip(), self.fingertip.incipient()]));
+            let [slip, incipient] = [self.fingertip.slip(), self.fingertip.incipient()]
+                .map(|detectors| detectors.contains(DetectorId::Hebbian));
+            trial.said.push(Said { slip, incipient });
             if let Some(slow) = self.fingertip.take_slow() {
-                see(seen, &slow, self);
-                seen += 1;
-                self.said.clear();
+                trial.outputs.extend(slow.ticks.iter().map(|tick| tick.outputs));
             }
             while self.fingertip.next_event().is_some() {}
         }
-        world
+        trial.truth = world.truth().clone();
+        trial
     }
 
     pub fn trial(&mut self, setup: Setup) -> Trial {
-        self.trial_for(f64::INFINITY, setup)
-    }
-
-    /// Goes through a trial until so long after the lift began, s.
-    pub fn trial_for(&mut self, for_s: f64, setup: Setup) -> Trial {
-        let mut trial = Trial { lift_s: setup.lift_s, ..Trial::default() };
-        let for_s = setup.lift_s + for_s;
-        let world = self.run(for_s, setup.world, Judge::Touch, &mut |n, slow, bench| {
-            trial.hear(n, slow, &bench.said);
-        });
-        trial.truth = world.truth().clone();
-        trial
+        Trial { lift_s: setup.lift_s, ..self.run(setup.world, Judge::Touch) }
     }
 
     /// The learned state, as the board keeps it. Fails by a bug alone.
@@ -114,24 +92,19 @@ impl Bench {
         Ok(kept.write(&mut bytes).context("a snapshot of another length")?.to_vec())
     }
 
-    /// A copy with something of its learning changed, switched off and on. Fails by a bug alone.
-    pub fn controlled(&self, control: Control) -> anyhow::Result<Self> {
+    /// A copy whose films count alike in o1: each has the mean of their weights. Fails by a bug alone.
+    pub fn equalised(&self) -> anyhow::Result<Self> {
         let kept = self.snapshot()?;
         let (normaliser, network, more) =
             snapshot::restore(&hebbian::NORMALISER, &kept).context("a damaged snapshot")?;
         let mut weights = network.weights();
         let films = &mut weights[0][..PVDF_COUNT];
-        let more = control.change(films, more);
-        let changed = FingertipNetwork::from_weights(&weights);
+        let sum: i64 = films.iter().map(|weight| i64::from(weight.into_bits())).sum();
+        films.fill(Weight::from_bits((sum / PVDF_COUNT as i64) as i32));
         let mut bytes = [0; hebbian::SNAPSHOT_LENGTH];
-        let kept = snapshot::save(&normaliser, &changed, more, &mut bytes);
-        let kept = kept.context("a snapshot of another length")?;
+        let kept = snapshot::save(&normaliser, &FingertipNetwork::from_weights(&weights), more, &mut bytes);
         let mut other = self.clone();
-        other.fingertip.restore(words::Kept::Network, kept);
+        other.fingertip.restore(words::Kept::Network, kept.context("a snapshot of another length")?);
         Ok(other)
-    }
-
-    pub fn said(&self) -> &[Said] {
-        &self.said
     }
 }

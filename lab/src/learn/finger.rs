@@ -5,7 +5,6 @@ use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use tenax_scene::{SceneFile, builtin};
 
-/// Standard gravity, m/s^2.
 const GRAVITY_M_S2: f64 = 9.80665;
 /// Force at which the block of the scene file stops sliding, N: `m g / (2 mu_d)`.
 const NEEDED_N: f64 = 0.2 * GRAVITY_M_S2 / (2.0 * 0.46);
@@ -49,10 +48,8 @@ impl Finger {
         }
     }
 
-    /// One made by chance: friction, mass, texture, the contact's size, the skin, how loud micro slip is, hum and noise of its
-    /// films, the gains of its receptors and how unlike they are; each film's own gain, and its own noise. What nobody has measured
-    /// is drawn over a decade, evenly over its logarithm; friction has the ends of `dataset::material`, sliding keeps 0.6 to 0.95 of it. What is left out is as in
-    /// the scene files.
+    /// Its skin, contact, films, gauges and object are drawn over about a decade each where nobody has measured them; friction has the
+    /// ends of `dataset::material`, and sliding keeps 0.6 to 0.95 of it.
     pub fn random(seed: u64) -> Self {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let mut between = |low: f64, high: f64| rng.random_range(low..high);
@@ -86,10 +83,6 @@ impl Finger {
                 ("pvdf.mains_hz", 50.0 + OFF_HZ * (2.0 * rng.random_range(0.0..1.0) - 1.0)),
             ],
         }
-    }
-
-    pub fn ratio(&self) -> f64 {
-        self.mu_d / self.mu_s
     }
 
     /// The scene of this name with this finger and its object, edited. Friction and mass differ by up to 3 %, the first grip by 5 %, from
@@ -142,15 +135,8 @@ impl Finger {
         self
     }
 
-    /// The object's mass, kg.
     pub const fn mass_kg(&self) -> f64 {
         self.mass_kg
-    }
-
-    /// Time of closing at 36 mm/s until the fingers press the object with so many times its need, s: they have 1 mm
-    /// each to go, and press 0.3 N for each mm after that.
-    pub fn closing_s(&self, times: f64) -> f64 {
-        (2.0 + times * self.force * NEEDED_N / 0.3) / 36.0
     }
 
     pub const fn force(&self) -> f64 {

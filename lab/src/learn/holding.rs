@@ -1,7 +1,5 @@
 //! Holding: minutes in which nothing slips, and much else happens.
 
-use std::ops::Add;
-
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
@@ -9,10 +7,10 @@ use tenax_scene::{SceneFile, Seeds, World};
 
 use super::bench::{Bench, Judge};
 use super::finger::Finger;
-use super::trial::{Trial, Word};
+use super::trial::Word;
 use crate::dataset::story::entry;
 use tenax_sim::report::fate;
-use tenax_sim::scorer::{Card, Doing, Stretch};
+use tenax_sim::scorer::{Alarms, Card, Doing, Stretch};
 
 const SCENE: &str = "hold";
 /// The block is in the air and the hand still, s.
@@ -21,44 +19,12 @@ const KNOCKS: u32 = 6;
 const SWINGS: u32 = 2;
 const RUNS: u32 = 2;
 
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+/// False alarms of slip or of a warning, of slip, and of a warning.
+#[derive(Clone, Copy, Debug)]
 pub struct Holding {
-    /// Time without slip, h.
-    pub hours: f64,
-    /// False alarms of slip, or of a warning.
-    pub any: False,
-    pub slip: False,
-    pub warning: False,
-    /// Slips that were true: none is meant here.
-    pub slips: u32,
-}
-
-/// False alarms of one kind of word.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct False {
-    pub count: u32,
-    pub in_micro_slip: u32,
-}
-
-impl False {
-    fn of(word: Word, trial: &Trial, held: Stretch) -> Self {
-        let alarms = Card::of(&fate::spans(&trial.truth), &trial.verdicts(word), &[held]).false_alarms;
-        Self { count: alarms.count as u32, in_micro_slip: alarms.in_micro_slip as u32 }
-    }
-}
-
-impl Add for False {
-    type Output = Self;
-
-    fn add(self, other: Self) -> Self {
-        Self { count: self.count + other.count, in_micro_slip: self.in_micro_slip + other.in_micro_slip }
-    }
-}
-
-impl Holding {
-    pub fn per_hour(&self, alarms: False) -> f64 {
-        if self.hours > 0.0 { f64::from(alarms.count) / self.hours } else { 0.0 }
-    }
+    pub any: Alarms,
+    pub slip: Alarms,
+    pub warning: Alarms,
 }
 
 /// So many minutes with this fingertip, each by itself. `done` is told when one is over. Fails if a scene cannot be made.
@@ -74,35 +40,21 @@ pub fn hold(
         done();
         minute
     });
-    all.try_reduce(Holding::default, |a, b| {
-        Ok(Holding {
-            hours: a.hours + b.hours,
-            any: a.any + b.any,
-            slip: a.slip + b.slip,
-            warning: a.warning + b.warning,
-            slips: a.slips + b.slips,
-        })
-    })
+    let cards = all.try_reduce(<[Card; 3]>::default, |mut sum, minute| {
+        sum.iter_mut().zip(&minute).for_each(|(sum, card)| sum.add(card));
+        Ok(sum)
+    })?;
+    let [any, slip, warning] = cards.map(|card| card.false_alarms);
+    Ok(Holding { any, slip, warning })
 }
 
-fn one(finger: &Finger, learned: &Bench, seed: u64) -> anyhow::Result<Holding> {
+fn one(finger: &Finger, learned: &Bench, seed: u64) -> anyhow::Result<[Card; 3]> {
     let scene = minute(finger, seed, true)?;
-    let mut bench = learned.clone();
-    let mut trial = Trial::default();
     let world = World::seeded(&scene, Seeds { making: finger.making, noise: seed });
-    let world = bench
-        .run(f64::INFINITY, world, Judge::Touch, &mut |n, slow, bench| trial.hear(n, slow, bench.said()));
-    trial.truth = world.truth().clone();
+    let trial = learned.clone().run(world, Judge::Touch);
     let held = Stretch { from_s: FROM_S, to_s: scene.duration_s(), doing: Doing::Hold };
-    let false_of = |word| False::of(word, &trial, held);
-    let slips = &trial.truth.slips;
-    Ok(Holding {
-        hours: (scene.duration_s() - FROM_S) / 3_600.0,
-        any: false_of(Word::Any),
-        slip: false_of(Word::Slip),
-        warning: false_of(Word::Warning),
-        slips: slips.iter().filter(|slip| slip.macro_onset_s > FROM_S).count() as u32,
-    })
+    let card = |word| Card::of(&fate::spans(&trial.truth), &trial.verdicts(word), &[held]);
+    Ok([Word::Any, Word::Slip, Word::Warning].map(card))
 }
 
 /// A minute by chance; without disturbances nothing happens in it. Fails if the scene cannot be made.

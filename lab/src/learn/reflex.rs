@@ -3,7 +3,7 @@
 
 use rayon::prelude::*;
 use tenax_scene::bound::Plan;
-use tenax_scene::{Seeds, World};
+use tenax_scene::{Seeds, Truth, World};
 
 use super::bench::{Bench, Judge};
 use super::finger::{Change, Finger};
@@ -19,17 +19,14 @@ const POUR_S: f64 = 4.0;
 /// Speed along the hand below which the object is secured, mm/s: the scenes' floor of slip.
 const FLOOR_MM_S: f64 = 1.0;
 
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub struct Reflexed {
-    /// From its beginning, s (of the lift, or of the pour), and how far the object has sunk in the hand since, mm.
-    pub sunk_mm: Vec<(f64, f64)>,
-    /// When it last moved along the hand, s from the beginning of the lift.
+    /// When the object last moved along the hand, s from the beginning of the lift or of the pour.
     pub secured_s: f64,
     /// Sunk in the end, mm, with the skin's give under the load.
     pub distance_mm: f64,
     /// Force of each finger in the end, N.
     pub grip_n: f64,
-    pub dropped: bool,
 }
 
 /// One of each judge, with the same chance.
@@ -76,29 +73,21 @@ fn three(
     let run = |judge| {
         let world = World::seeded(&scene, Seeds { making: finger.making, noise: seed });
         let world = if judge == Judge::Bound { world.planning(Plan::of(&scene)) } else { world };
-        reflexed(&learned.clone().run(f64::INFINITY, world, judge, &mut |_, _, _| ()), from_s)
+        reflexed(&learned.clone().run(world, judge).truth, from_s)
     };
     Ok(JUDGES.map(run))
 }
 
-fn reflexed(world: &World, from_s: f64) -> Reflexed {
-    let truth = world.truth();
-    let rows: Vec<_> = truth.trace.iter().filter(|row| row.t_s >= from_s).collect();
-    let mut sunk_mm = Vec::with_capacity(rows.len());
-    let (mut distance_mm, mut last_s, mut secured_s) = (0.0, from_s, 0.0);
-    for row in &rows {
-        distance_mm += row.slide_mm_s * (row.t_s - last_s);
+fn reflexed(truth: &Truth, from_s: f64) -> Reflexed {
+    let mut reflexed = Reflexed { secured_s: 0.0, distance_mm: 0.0, grip_n: 0.0 };
+    let mut last_s = from_s;
+    for row in truth.trace.iter().filter(|row| row.t_s >= from_s) {
+        reflexed.distance_mm += row.slide_mm_s * (row.t_s - last_s);
+        reflexed.grip_n = row.grip_n;
         last_s = row.t_s;
-        sunk_mm.push((row.t_s - from_s, distance_mm));
         if row.slide_mm_s.abs() > FLOOR_MM_S {
-            secured_s = row.t_s - from_s;
+            reflexed.secured_s = row.t_s - from_s;
         }
     }
-    Reflexed {
-        sunk_mm,
-        secured_s,
-        distance_mm,
-        grip_n: rows.last().map_or(0.0, |row| row.grip_n),
-        dropped: truth.dropped,
-    }
+    reflexed
 }

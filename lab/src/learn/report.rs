@@ -2,9 +2,9 @@
 
 use serde::Serialize;
 
+use super::Outcome;
 use super::reflex::{Reflexed, Three};
 use super::trial::{Trial, Word};
-use super::{Other, Outcome};
 
 /// Mean, standard deviation and least of a sample; zeros of none.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -58,12 +58,6 @@ impl Words {
     pub fn lead(&self) -> Spread {
         Spread::of(&self.lead_s)
     }
-
-    /// Lead over `other` in the trials in which both reported, s, mean.
-    fn sooner_s(&self, other: &Self) -> Vec<f64> {
-        let both = self.said_s.iter().zip(&other.said_s);
-        both.filter_map(|(own, other)| Some((*other)? - (*own)?)).collect()
-    }
 }
 
 /// Held-out trials, scored.
@@ -101,26 +95,6 @@ impl Score {
     }
 }
 
-/// One kind of word of a group of fingertips: leads over the camera, s, means.
-#[derive(Clone, Copy, Debug, Default, Serialize)]
-pub struct Lead {
-    pub lead_s: f64,
-    pub lead_s_no_delay: f64,
-    pub missed: u64,
-}
-
-impl Lead {
-    fn of<'a>(words: impl Iterator<Item = &'a Words>) -> Self {
-        let (mut leads, mut no_delay, mut missed) = (Vec::new(), Vec::new(), 0);
-        for own in words {
-            leads.extend(&own.lead_s);
-            no_delay.extend(&own.lead_no_delay_s);
-            missed += own.missed;
-        }
-        Self { lead_s: Spread::of(&leads).mean, lead_s_no_delay: Spread::of(&no_delay).mean, missed }
-    }
-}
-
 /// One kind of word of the finger.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Said {
@@ -133,9 +107,8 @@ pub struct Said {
     pub missed: u64,
     /// False alarms an hour of holding.
     pub false_per_hour: f64,
-    pub equal_weights: Lead,
-    /// Lead of learned over equal weights, s, mean.
-    pub sooner_than_equal_s: f64,
+    /// Lead over the camera with equal weights, s, mean.
+    pub equal_weights_lead_s: f64,
 }
 
 impl Said {
@@ -146,8 +119,7 @@ impl Said {
             lead_s_no_delay: Spread::of(&words.lead_no_delay_s),
             missed: words.missed,
             false_per_hour,
-            equal_weights: Lead::of(std::iter::once(equal)),
-            sooner_than_equal_s: Spread::of(&words.sooner_s(equal)).mean,
+            equal_weights_lead_s: equal.lead().mean,
         }
     }
 }
@@ -167,11 +139,9 @@ pub struct Report {
     /// False warnings, which shear gives, an hour of holding.
     pub warnings_false_per_hour: f64,
     pub holding_hours: f64,
-    /// Lifts of all fingertips with 1.5 to 3 times the needed force.
-    pub safe: Safe,
     /// The reflex triggered by each judge, in lifts and in pours.
-    pub lifts: Vec<Told>,
-    pub pours: Vec<Told>,
+    pub lifts: [Told; 3],
+    pub pours: [Told; 3],
     /// Slips, up or down, with the wrong direction of o2.
     pub direction_wrong: u64,
     pub fingertips: Fingertips,
@@ -189,90 +159,52 @@ pub struct Told {
     pub grip_n: f64,
 }
 
-fn told(runs: &[Three]) -> Vec<Told> {
-    let secured_s = of_judges(runs, |run| run.secured_s);
-    let distance_mm = of_judges(runs, |run| run.distance_mm);
-    let grip_n = of_judges(runs, |run| run.grip_n);
-    let of = |(n, judge): (usize, &'static str)| Told {
-        judge,
-        secured_s: secured_s[n],
-        distance_mm: distance_mm[n],
-        grip_n: grip_n[n],
-    };
-    ["touch", "vision", "bound"].into_iter().enumerate().map(of).collect()
+/// In the order of [`JUDGES`](super::reflex::JUDGES).
+pub fn told(runs: &[Three]) -> [Told; 3] {
+    std::array::from_fn(|n| {
+        let mean = |of: fn(&Reflexed) -> f64| {
+            Spread::of(&runs.iter().map(|three| of(&three[n])).collect::<Vec<_>>()).mean
+        };
+        Told {
+            judge: ["touch", "vision", "bound"][n],
+            secured_s: mean(|run| run.secured_s),
+            distance_mm: mean(|run| run.distance_mm),
+            grip_n: mean(|run| run.grip_n),
+        }
+    })
 }
 
 /// Random fingertips.
 #[derive(Clone, Debug, Serialize)]
 pub struct Fingertips {
-    pub count: u64,
+    pub count: usize,
+    pub trials: u64,
     /// The mean lead of the worst of them, s. Null if one missed a slip or reported a direction wrongly, or there are none.
     pub worst_lead_s: Option<f64>,
-    pub trials: u64,
-    /// Sliding keeps at most 0.75 of static friction, and more.
-    pub slippery: Group,
-    pub even: Group,
-    pub all: Group,
-}
-
-#[derive(Clone, Debug, Default, Serialize)]
-pub struct Group {
-    pub count: usize,
-    pub first: Lead,
-    pub slip: Lead,
-}
-
-/// Lifts with more force than the object needs, in which every report is false.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Safe {
-    pub lifts: u64,
-    /// Lifts with a report of slip or a warning, and with one of slip.
-    pub said: u64,
-    pub slip: u64,
-}
-
-/// Most of static friction that sliding keeps on a slippery fingertip.
-const SLIPPERY: f64 = 0.75;
-
-impl Group {
-    fn of<'a>(others: impl Iterator<Item = &'a Other>) -> Self {
-        let others: Vec<&Other> = others.collect();
-        Self {
-            count: others.len(),
-            first: Lead::of(others.iter().map(|other| &other.score.first)),
-            slip: Lead::of(others.iter().map(|other| &other.score.slip)),
-        }
-    }
+    /// Trials whose slip was not reported.
+    pub missed: u64,
 }
 
 impl Report {
     pub fn of(outcome: &Outcome) -> Self {
         let Outcome { score, equal, holding, others, .. } = outcome;
-        let group = |accepts: fn(f64) -> bool| Group::of(others.iter().filter(|own| accepts(own.ratio)));
         Self {
             trials: score.trials,
             vision_first_s_mean: Spread::of(&score.vision_s).mean,
             micro_onset_s_mean: Spread::of(&score.micro_s).mean,
             macro_onset_s_mean: Spread::of(&score.macro_s).mean,
-            first: Said::of(&score.first, &equal.first, holding.per_hour(holding.any)),
-            slip: Said::of(&score.slip, &equal.slip, holding.per_hour(holding.slip)),
-            warnings_false_per_hour: holding.per_hour(holding.warning),
-            holding_hours: holding.hours,
-            safe: others.iter().fold(Safe::default(), |all, Other { safe, .. }| Safe {
-                lifts: all.lifts + safe.lifts,
-                said: all.said + safe.said,
-                slip: all.slip + safe.slip,
-            }),
+            first: Said::of(&score.first, &equal.first, holding.any.per_hour),
+            slip: Said::of(&score.slip, &equal.slip, holding.slip.per_hour),
+            warnings_false_per_hour: holding.warning.per_hour,
+            holding_hours: holding.slip.hours,
             lifts: told(&outcome.lifts),
             pours: told(&outcome.pours),
             direction_wrong: score.direction_wrong,
             fingertips: Fingertips {
-                count: others.len() as u64,
+                count: others.len(),
+                trials: others.iter().map(|other| other.trials).sum(),
                 worst_lead_s: outcome.others_work().then(|| outcome.worst_lead_s()).flatten(),
-                trials: others.iter().map(|other| other.score.trials).sum(),
-                slippery: group(|ratio| ratio <= SLIPPERY),
-                even: group(|ratio| ratio > SLIPPERY),
-                all: group(|_| true),
+                missed: others.iter().map(|other| other.first.missed).sum(),
             },
         }
     }
@@ -281,18 +213,12 @@ impl Report {
 impl Outcome {
     /// Whether every random fingertip reported slip, or warned, in every slip, with its direction.
     pub fn others_work(&self) -> bool {
-        self.others.iter().all(|other| other.score.first.missed == 0 && other.score.direction_wrong == 0)
+        self.others.iter().all(|other| other.first.missed == 0 && other.direction_wrong == 0)
     }
 
     /// The mean lead of the worst random fingertip, s.
     pub fn worst_lead_s(&self) -> Option<f64> {
-        let seen = self.others.iter().filter(|other| !other.score.first.lead_s.is_empty());
-        seen.map(|other| other.score.first.lead().mean).min_by(f64::total_cmp)
+        let seen = self.others.iter().filter(|other| !other.first.lead_s.is_empty());
+        seen.map(|other| other.first.lead().mean).min_by(f64::total_cmp)
     }
-}
-
-/// The mean of a figure over each judge's runs, in the order of [`JUDGES`](super::reflex::JUDGES).
-pub fn of_judges(runs: &[Three], figure: impl Fn(&Reflexed) -> f64) -> [f64; 3] {
-    [0, 1, 2]
-        .map(|judge| Spread::of(&runs.iter().map(|three| figure(&three[judge])).collect::<Vec<_>>()).mean)
 }

@@ -1,28 +1,23 @@
 //! One pick-up (Tada 2006, figure 5), and what is read off it.
 
-use std::ops::Range;
-
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
-use tenax_hal_shim::channel::{FRAME_HZ, FRAMES_PER_SLOW_FRAME};
-use tenax_hal_shim::detector::{DetectorId, DetectorSet};
-use tenax_hal_shim::wire::Slow;
+use tenax_hal_shim::channel::FRAME_HZ;
 use tenax_logic::detectors::Said;
 use tenax_scene::sensor::camera::Seen;
 use tenax_scene::truth::Slip;
 use tenax_scene::{SceneFile, Seeds, Truth, World};
 
-use super::finger::{Change, Finger};
+use super::finger::Finger;
 use tenax_sim::report::fate;
 use tenax_sim::scorer::{Card, Doing, Outcome, Stretch, Verdict, outcome};
 
-pub const SCENE: &str = "pick-up-trial";
+const SCENE: &str = "pick-up-trial";
 /// When its arm begins to lift, at the earliest, s. Chance adds up to six of the camera's images, so that no image has a
 /// favourite instant.
 const LIFT_S: f64 = 1.2;
 const LATER_S: f64 = 0.2;
 
-/// A trial before it is run.
 #[derive(Debug)]
 pub struct Setup {
     pub world: World,
@@ -34,37 +29,14 @@ impl Setup {
     /// A trial of this finger. The seed decides all that differs from one trial to the next. A lesson is one in which the
     /// camera teaches. Fails if the scene cannot be made.
     pub fn new(finger: &Finger, seed: u64, lesson: bool) -> anyhow::Result<Self> {
-        Self::changed(finger, seed, lesson, &[])
-    }
-
-    /// A lift with more force than the object needs, by chance; the fingers do not close further. Fails if the scene cannot be made.
-    pub fn held(finger: &Finger, seed: u64) -> anyhow::Result<Self> {
-        let more = ChaCha8Rng::seed_from_u64(seed).random_range(SAFE_FORCE);
-        let grip = [
-            ("command.grip.duty_permille", 300.0),
-            ("command.grip.for_s", finger.closing_s(more)),
-            ("command.more.duty_permille", 0.0),
-        ];
-        Self::changed(finger, seed, false, &grip)
-    }
-
-    /// A trial with some numbers of its scene changed. Fails if the scene cannot be made.
-    fn changed(finger: &Finger, seed: u64, lesson: bool, more: &[Change]) -> anyhow::Result<Self> {
-        let (scene, lift_s) = Self::scene(finger, seed, lesson, more)?;
+        let (scene, lift_s) = Self::scene(finger, seed, lesson)?;
         Ok(Self { world: World::seeded(&scene, Seeds { making: finger.making, noise: seed }), lift_s })
     }
 
     /// Its scene, and when the arm begins to lift, s. Fails if the scene cannot be made.
-    pub fn scene(
-        finger: &Finger,
-        seed: u64,
-        lesson: bool,
-        more: &[Change],
-    ) -> anyhow::Result<(SceneFile, f64)> {
+    pub fn scene(finger: &Finger, seed: u64, lesson: bool) -> anyhow::Result<(SceneFile, f64)> {
         let lift_s = LIFT_S + ChaCha8Rng::seed_from_u64(seed).random_range(0.0..LATER_S);
-        let mut changes = vec![("move.0.at_s", lift_s)];
-        changes.extend_from_slice(more);
-        let scene = finger.scene(SCENE, seed, &changes, |scene| {
+        let scene = finger.scene(SCENE, seed, &[("move.0.at_s", lift_s)], |scene| {
             if let Some(camera) = scene.get_mut("camera").and_then(toml::Value::as_table_mut) {
                 camera.insert("teaches".to_owned(), lesson.into());
             }
@@ -73,9 +45,6 @@ impl Setup {
     }
 }
 
-const SAFE_FORCE: Range<f64> = 1.5..3.0;
-
-/// Which words of the network's are listened to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Word {
     /// Slip or a warning of it, whichever comes first.
@@ -96,14 +65,9 @@ impl Word {
     }
 }
 
-pub const fn by_network([slip, warning]: [DetectorSet; 2]) -> Said {
-    Said { slip: slip.contains(DetectorId::Hebbian), incipient: warning.contains(DetectorId::Hebbian) }
-}
-
 /// A trial that was run: what the fingertip said in every tick, and what was true.
 #[derive(Clone, Debug, Default)]
 pub struct Trial {
-    /// When the arm began to lift, s.
     pub lift_s: f64,
     pub outputs: Vec<[i8; 2]>,
     /// Whether that meant slip, and whether it was warned of.
@@ -112,16 +76,6 @@ pub struct Trial {
 }
 
 impl Trial {
-    /// Takes what the nth slow frame of the trial tells, and what was said in its ticks. One that is missing says nothing.
-    pub fn hear(&mut self, n: usize, slow: &Slow, said: &[Said]) {
-        let ticks = usize::from(FRAMES_PER_SLOW_FRAME);
-        self.outputs.resize(n * ticks, [0; 2]);
-        self.said.resize(n * ticks, Said::NOTHING);
-        self.outputs.extend(slow.ticks.iter().map(|tick| tick.outputs));
-        self.said.extend(said);
-    }
-
-    /// When a tick ran, s.
     pub fn time_s(tick: usize) -> f64 {
         (tick as f64 + 1.0) / f64::from(FRAME_HZ)
     }

@@ -4,7 +4,6 @@ mod dataset;
 mod emg;
 mod evaluate;
 mod learn;
-mod lesson;
 mod photoelastic;
 mod table;
 mod training;

@@ -5,12 +5,10 @@
 pub mod captured;
 mod client;
 mod inbox;
-mod last;
 mod outbox;
 mod target;
 
 pub use client::{ANSWER_WITHIN, Client, is_silence};
 pub use inbox::{Counts, Heard, Inbox};
-pub use last::LastSeconds;
 pub use outbox::{Encoder, Outbox};
-pub use target::{Line, Target};
+pub use target::{Line, Target, port_names};

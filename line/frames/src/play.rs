@@ -1,8 +1,7 @@
-//! Plays a recording's line, at its pace or another, from any second: for `tenax play` and the page of `tenax monitor`.
+//! Plays a recording's line for the page of `tenax monitor`, at its pace or another, from any second.
 
 use std::path::Path;
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
-use std::thread;
 use std::time::{Duration, Instant};
 
 use serde::Serialize;
@@ -14,23 +13,20 @@ use crate::words::seconds;
 
 /// Interval of [`Told::At`], s of the recording.
 const TOLD_EACH_S: f64 = 0.1;
-/// Who the board is and its settings come within this time, s: they are told wherever playing begins.
+/// Identity and settings of the board come within this time, s: they are told wherever playing begins.
 const BEGINNING_S: f64 = 2.0;
-/// The slowest and the fastest speed, times real time.
-pub const SPEEDS: (f64, f64) = (0.01, 100.0);
+const SPEEDS: (f64, f64) = (0.01, 100.0);
 
-/// A recording: its line, and time (s) and place of each slow frame.
+/// A recording's line, and time (s) and end (bytes) of each frame.
 pub struct Reel {
     line: Vec<u8>,
-    places: Vec<(f64, usize)>,
-    length_s: f64,
+    frames: Vec<(f64, usize)>,
 }
 
 impl Reel {
-    /// Fails if the file cannot be read, or holds no message of a board.
     pub fn open(path: &Path) -> anyhow::Result<Self> {
         let line = line_of(path)?;
-        let (mut inbox, mut places, mut begin) = (Inbox::default(), Vec::new(), 0);
+        let (mut inbox, mut frames) = (Inbox::default(), Vec::new());
         // A board that starts anew counts from 0 again: its time goes on.
         let (mut at_s, mut zero_s) = (0.0, None);
         for (n, &byte) in line.iter().enumerate() {
@@ -40,32 +36,22 @@ impl Reel {
                 Ok(Up::Slow(slow)) => {
                     let board_s = seconds(slow.frame);
                     at_s = board_s + *zero_s.get_or_insert(-board_s);
-                    places.push((at_s, begin));
                 }
                 _ => {}
             }
-            begin = n + 1;
+            frames.push((at_s, n + 1));
         }
-        Ok(Self { line, places, length_s: at_s })
+        Ok(Self { line, frames })
     }
 
-    pub const fn length_s(&self) -> f64 {
-        self.length_s
+    fn length_s(&self) -> f64 {
+        self.frames.last().map_or(0.0, |(at_s, _)| *at_s)
     }
 
-    /// The messages from the slow frame at `from_s` on, each with its time, s.
-    fn messages(&self, from_s: f64) -> impl Iterator<Item = (f64, Heard)> {
-        let mut next = self.places.partition_point(|(at_s, _)| *at_s < from_s);
-        let before = next.checked_sub(1).map(|n| self.places[n].0);
-        let begin = if next == 0 { 0 } else { self.places.get(next).map_or(self.line.len(), |(_, at)| *at) };
-        let (mut inbox, mut at_s) = (Inbox::default(), before.unwrap_or(0.0));
-        self.line[begin..].iter().filter_map(move |&byte| inbox.push(byte)).flatten().map(move |heard| {
-            if let (Up::Slow(_), Some((slow_s, _))) = (&heard.received.message, self.places.get(next)) {
-                at_s = *slow_s;
-                next += 1;
-            }
-            (at_s, heard)
-        })
+    /// The message of a frame, if it is one; `inbox` has taken the frame before.
+    fn message(&self, n: usize, inbox: &mut Inbox) -> Option<Heard> {
+        let begin = n.checked_sub(1).map_or(0, |before| self.frames[before].1);
+        self.line[begin..self.frames[n].1].iter().find_map(|&byte| inbox.push(byte))?.ok()
     }
 }
 
@@ -73,21 +59,14 @@ impl Reel {
 pub struct Playing {
     pub at_s: f64,
     pub of_s: f64,
-    /// Times real time.
     pub speed: f64,
-    /// It begins again when it is over.
     pub repeat: bool,
     pub paused: bool,
 }
 
 impl Playing {
-    /// From the beginning, in real time.
-    pub const fn new(reel: &Reel) -> Self {
-        Self { at_s: 0.0, of_s: reel.length_s(), speed: 1.0, repeat: false, paused: false }
-    }
-
-    /// Does what a line says. Some(true): playing goes on elsewhere. None: the line is no control.
-    fn control(&mut self, line: &str) -> Option<bool> {
+    /// Does what a line says. Some: playing goes on at this second. Lines that are no control are ignored.
+    fn control(&mut self, line: &str) -> Option<f64> {
         let number = |text: &str| text.parse().ok().filter(|number: &f64| number.is_finite());
         match line {
             "loop" => self.repeat = !self.repeat,
@@ -96,12 +75,11 @@ impl Playing {
                 Some(speed) => self.speed = number(speed)?.clamp(SPEEDS.0, SPEEDS.1),
                 None => {
                     let from_s = if line.starts_with(['+', '-']) { self.at_s } else { 0.0 };
-                    self.at_s = (from_s + number(line)?).clamp(0.0, self.of_s);
-                    return Some(true);
+                    return Some((from_s + number(line)?).clamp(0.0, self.of_s));
                 }
             },
         }
-        Some(false)
+        None
     }
 }
 
@@ -111,109 +89,66 @@ pub enum Told {
     /// Playing goes on elsewhere: state from earlier messages is void.
     Again,
     At(Playing),
-    /// It is over, and does not begin again by itself.
-    Over,
 }
 
-/// Why playing stopped.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Stop {
-    AtEnd,
-    Jump,
-    /// Nobody listens, or nobody is left who could let it go on.
-    Left,
-}
-
-/// Plays until `tell` returns false, or the controls end while it stands still. Lines that are no control are ignored: `12.5`
-/// (that second), `+5` and `-5` (by seconds), `x2` (speed), `loop` and `pause` are.
-pub fn play(
-    reel: &Reel,
-    mut playing: Playing,
-    controls: &Receiver<String>,
-    tell: &mut dyn FnMut(Told) -> bool,
-) {
+/// Plays until `tell` returns false or the controls end. Controls: `12.5` (that second), `+5` and `-5` (by seconds), `x2` (speed),
+/// `loop` and `pause`; at the end these two begin it again.
+pub fn play(reel: &Reel, controls: &Receiver<String>, tell: &mut dyn FnMut(Told) -> bool) {
+    let mut now = Playing { at_s: 0.0, of_s: reel.length_s(), speed: 1.0, repeat: false, paused: false };
+    let (mut inbox, mut next, mut clock) = (Inbox::default(), 0, (Instant::now(), 0.0));
+    if !tell(Told::At(now)) {
+        return;
+    }
     loop {
-        match play_on(reel, &mut playing, controls, tell) {
-            Stop::Left => return,
-            Stop::AtEnd if playing.repeat => playing.at_s = 0.0,
-            Stop::AtEnd => {
-                if !tell(Told::Over) || !wait_at_end(&mut playing, controls) {
+        let due = reel.frames.get(next).filter(|_| !now.paused).map(|(at_s, _)| {
+            let since = Duration::from_secs_f64((at_s - clock.1).max(0.0) / now.speed);
+            since.saturating_sub(clock.0.elapsed())
+        });
+        let control = match due {
+            Some(due) => controls.recv_timeout(due),
+            None => controls.recv().map_err(|_| RecvTimeoutError::Disconnected),
+        };
+        let is_over = next == reel.frames.len();
+        let to_s = match control {
+            Err(RecvTimeoutError::Disconnected) => return,
+            Err(RecvTimeoutError::Timeout) => {
+                let (at_s, _) = reel.frames[next];
+                let is_told = (at_s / TOLD_EACH_S).floor() > (now.at_s / TOLD_EACH_S).floor();
+                now.at_s = at_s;
+                let heard = reel.message(next, &mut inbox).map(Box::new);
+                next += 1;
+                if heard.is_some_and(|heard| !tell(Told::Message(heard))) || is_told && !tell(Told::At(now)) {
                     return;
                 }
+                (now.repeat && next == reel.frames.len()).then_some(0.0)
             }
-            Stop::Jump => {}
-        }
-        if !tell(Told::Again) {
-            return;
+            Ok(line) => {
+                let begins = is_over && ["loop", "pause"].contains(&line.as_str());
+                let to_s = now.control(&line).or(begins.then_some(0.0));
+                now.paused &= !is_over;
+                now.at_s = to_s.unwrap_or(now.at_s);
+                clock = (Instant::now(), now.at_s);
+                if !tell(Told::At(now)) {
+                    return;
+                }
+                to_s
+            }
+        };
+        if let Some(to_s) = to_s {
+            (next, inbox) = (reel.frames.partition_point(|(at_s, _)| *at_s < to_s), Inbox::default());
+            (now.at_s, clock) = (to_s, (Instant::now(), to_s));
+            if !tell(Told::Again) || !tell_beginning(reel, to_s, tell) {
+                return;
+            }
         }
     }
 }
 
-/// Waits for a control that begins it again. False: there are no more.
-fn wait_at_end(playing: &mut Playing, controls: &Receiver<String>) -> bool {
-    for line in controls {
-        let jumps = playing.control(&line) == Some(true);
-        playing.paused = false;
-        if ["loop", "pause"].contains(&line.as_str()) {
-            playing.at_s = 0.0;
-            return true;
-        }
-        if jumps {
-            return true;
-        }
-    }
-    false
-}
-
-fn play_on(
-    reel: &Reel,
-    playing: &mut Playing,
-    controls: &Receiver<String>,
-    tell: &mut dyn FnMut(Told) -> bool,
-) -> Stop {
-    playing.at_s = playing.at_s.clamp(0.0, reel.length_s());
-    let from_s = playing.at_s;
-    let stays = |message: &Up| matches!(message, Up::About(_) | Up::Answer { .. });
-    let beginning = reel.messages(0.0).take_while(|(at_s, _)| *at_s < BEGINNING_S.min(from_s));
-    for (_, heard) in beginning.filter(|(_, heard)| stays(&heard.received.message)) {
-        if !tell(Told::Message(Box::new(heard))) {
-            return Stop::Left;
-        }
-    }
-    let mut clock = (Instant::now(), from_s);
-    for (at_s, heard) in reel.messages(from_s) {
-        loop {
-            let due = Duration::from_secs_f64((at_s - clock.1).max(0.0) / playing.speed);
-            let left = due.saturating_sub(clock.0.elapsed());
-            let control = match (playing.paused, controls.recv_timeout(left)) {
-                (_, Ok(control)) => Some(control),
-                (true, Err(_)) => controls.recv().ok(),
-                (false, Err(RecvTimeoutError::Timeout)) => None,
-                (false, Err(RecvTimeoutError::Disconnected)) => {
-                    thread::sleep(left);
-                    None
-                }
-            };
-            match control {
-                Some(line) => {
-                    let Some(jumps) = playing.control(&line) else { continue };
-                    clock = (Instant::now(), playing.at_s);
-                    if !tell(Told::At(*playing)) {
-                        return Stop::Left;
-                    }
-                    if jumps {
-                        return Stop::Jump;
-                    }
-                }
-                None if playing.paused => return Stop::Left,
-                None => break,
-            }
-        }
-        let is_told = (at_s / TOLD_EACH_S).floor() > (playing.at_s / TOLD_EACH_S).floor();
-        playing.at_s = playing.at_s.max(at_s);
-        if !tell(Told::Message(Box::new(heard))) || is_told && !tell(Told::At(*playing)) {
-            return Stop::Left;
-        }
-    }
-    Stop::AtEnd
+fn tell_beginning(reel: &Reel, before_s: f64, tell: &mut dyn FnMut(Told) -> bool) -> bool {
+    let end = reel.frames.partition_point(|(at_s, _)| *at_s < BEGINNING_S.min(before_s));
+    let mut inbox = Inbox::default();
+    (0..end)
+        .filter_map(|n| reel.message(n, &mut inbox))
+        .filter(|heard| matches!(heard.received.message, Up::About(_) | Up::Answer { .. }))
+        .all(|heard| tell(Told::Message(Box::new(heard))))
 }

@@ -12,10 +12,8 @@ pub enum Value {
     Bytes(Vec<u8>),
 }
 
-/// The fields of a message, in the order of their numbers from 1.
 pub type Fields = Vec<(Cow<'static, str>, Value)>;
 
-/// The package that the messages belong to.
 pub const PACKAGE: &str = "tenax";
 
 // Wire types.

@@ -10,6 +10,7 @@ pub mod topics;
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{BufWriter, ErrorKind, Write};
+use std::iter;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
@@ -32,7 +33,6 @@ pub fn name_now() -> PathBuf {
     PathBuf::from(format!("tenax-{}.mcap", now.replace(['-', ':'], "")))
 }
 
-/// A recording that is being written.
 pub struct Recording {
     file: Writer<NoSeek<BufWriter<File>>>,
     /// Number of each topic's channel, and of its next message.
@@ -40,36 +40,15 @@ pub struct Recording {
     /// When the file was begun, and the board's time 0 by this computer's clock, if that is known.
     began_ns: u64,
     zero_ns: Option<u64>,
-    /// The newest frame.
     last: u32,
     about: Option<About>,
     error: Option<anyhow::Error>,
     inbox: Inbox,
-    is_compact: bool,
-    /// Bytes of the line that wait to be one message, and the slow frames in them.
-    batch: (Vec<u8>, u32),
 }
 
-/// Slow frames in a message of a compact recording's line, and for each of its states: a message takes 16 bytes of an index that
-/// nothing compresses.
-const BATCH: u32 = 4;
-/// Topics of a compact recording.
-const COMPACT: [&str; 5] = [TOPIC, "/state", "/event", "/counters", "/setting"];
-
 impl Recording {
-    /// A recording of every topic in a new file.
-    /// Fails if the file cannot be written, is there already, or is not called `*.mcap`.
+    /// A recording in a new file. Fails if the file cannot be written, is there already, or is not called `*.mcap`.
     pub fn create(path: &Path) -> anyhow::Result<Self> {
-        Self::of(path, false)
-    }
-
-    /// One for hours: the line, and what a person draws first, 20 times a second.
-    /// Fails as [`create`](Self::create) does.
-    pub fn compact(path: &Path) -> anyhow::Result<Self> {
-        Self::of(path, true)
-    }
-
-    fn of(path: &Path, is_compact: bool) -> anyhow::Result<Self> {
         let name = path.display();
         if !is_recording(path) {
             bail!(
@@ -88,9 +67,6 @@ impl Recording {
             .compression_threads(0)
             // A chunk is written when it is whole: a file that is cut short is read up to there.
             .disable_seeking(true);
-        // Level 17 is a seventh smaller; a chunk takes 17 ms, and a serial port's 4 kB last for 40 ms of the whole line.
-        let options =
-            if is_compact { options.chunk_size(Some(128 << 10)).compression_level(17) } else { options };
         Ok(Self {
             file: options.create(NoSeek::new(BufWriter::new(file)))?,
             channels: BTreeMap::new(),
@@ -100,8 +76,6 @@ impl Recording {
             about: None,
             error: None,
             inbox: Inbox::default(),
-            is_compact,
-            batch: (Vec::new(), 0),
         })
     }
 
@@ -112,7 +86,6 @@ impl Recording {
         }
         let came_ns = now_ns();
         if matches!(received.message, Up::Hello { .. }) {
-            self.end_batch();
             // A board that starts anew counts from 0 again: in the file, its time goes on.
             (self.zero_ns, self.last) = (Some(came_ns.max(self.at_ns(self.last) + 1)), 0);
         }
@@ -127,32 +100,12 @@ impl Recording {
         }
         let mut buffer = [0; FRAME_MAX];
         let bytes = encode(received.sequence, &received.message, &mut buffer);
-        self.batch.0.extend_from_slice(bytes.unwrap_or_default());
-        self.batch.1 += u32::from(matches!(received.message, Up::Slow(_)));
-        let ends = !self.is_compact || self.batch.1 >= BATCH;
-        if ends {
-            self.end_batch();
-        }
-        for row in rows {
-            let is_left_out = !COMPACT.contains(&&*row.topic) || row.topic == "/state" && !ends;
-            if !(self.is_compact && is_left_out) {
-                self.put(&row, came_ns);
+        let fields = vec![("data".into(), Value::Bytes(bytes.unwrap_or_default().to_vec()))];
+        let line = Row { topic: TOPIC.into(), message: "Line", frame: self.last, fields };
+        for row in iter::once(line).chain(rows) {
+            if let Err(error) = self.write(&row, came_ns) {
+                self.error.get_or_insert(error.into());
             }
-        }
-    }
-
-    /// Writes the line's bytes that wait.
-    fn end_batch(&mut self) {
-        let (bytes, _) = std::mem::take(&mut self.batch);
-        if !bytes.is_empty() {
-            let fields = vec![("data".into(), Value::Bytes(bytes))];
-            self.put(&Row { topic: TOPIC.into(), message: "Line", frame: self.last, fields }, now_ns());
-        }
-    }
-
-    fn put(&mut self, row: &Row, came_ns: u64) {
-        if let Err(error) = self.write(row, came_ns) {
-            self.error.get_or_insert(error.into());
         }
     }
 
@@ -172,12 +125,10 @@ impl Recording {
         self.file.write_to_known_channel(&header, &protobuf::message(&row.fields))
     }
 
-    /// When a frame ended, ns of the file's time.
     fn at_ns(&self, frame: u32) -> u64 {
         self.zero_ns.unwrap_or(0) + in_ns(frame)
     }
 
-    /// Records the messages in bytes that came up a line.
     pub fn line(&mut self, bytes: &[u8]) {
         for &byte in bytes {
             if let Some(Ok(heard)) = self.inbox.push(byte) {
@@ -186,7 +137,11 @@ impl Recording {
         }
     }
 
-    fn metadata(&self) -> Metadata {
+    /// Ends the file. Fails if it could not be written whole.
+    pub fn finish(mut self) -> anyhow::Result<()> {
+        if let Some(error) = self.error {
+            return Err(error);
+        }
         let began = UNIX_EPOCH + Duration::from_nanos(self.began_ns);
         let mut all = vec![
             ("tool", concat!("tenax ", env!("CARGO_PKG_VERSION")).to_owned()),
@@ -202,16 +157,7 @@ impl Recording {
             ]);
         }
         let metadata = all.into_iter().map(|(key, value)| (key.to_owned(), value)).collect();
-        Metadata { name: "tenax".to_owned(), metadata }
-    }
-
-    /// Ends the file. Fails if it could not be written whole.
-    pub fn finish(mut self) -> anyhow::Result<()> {
-        self.end_batch();
-        if let Some(error) = self.error {
-            return Err(error);
-        }
-        self.file.write_metadata(&self.metadata())?;
+        self.file.write_metadata(&Metadata { name: "tenax".to_owned(), metadata })?;
         self.file.finish()?;
         Ok(self.file.into_inner().flush()?)
     }

@@ -7,17 +7,16 @@
 mod hub;
 #[cfg(unix)]
 mod pty;
-mod tcp;
 
 use std::fmt::{self, Display};
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, sync_channel};
 use std::sync::{Arc, Mutex};
 use std::thread::{self, JoinHandle};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use self::hub::{Frame, Framer, Hub};
-use crate::truth::{Bench, Key, Truth};
+use crate::truth::{Key, Truth};
 
 /// Frames on their way down to the board; a client that sends more waits.
 const DOWN_FRAMES: usize = 64;
@@ -27,13 +26,11 @@ const LAST_READ: Duration = Duration::from_millis(500);
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Options {
     pub pty: bool,
-    /// A symlink to it.
     pub at: Option<PathBuf>,
     /// TCP port of 127.0.0.1; 0: any free port.
     pub tcp: Option<u16>,
     /// TCP port of 127.0.0.1 for the scene's true state; 0: any free port.
     pub truth: Option<u16>,
-    /// What can be done at the scene's bench.
     pub keys: Vec<Key>,
 }
 
@@ -54,7 +51,6 @@ impl Display for Tally {
 /// A server's other end, for the board that it serves, or for one after the other.
 #[derive(Clone)]
 pub struct Down {
-    /// Frames that clients send to the board.
     pub bytes: Arc<Mutex<Receiver<Vec<u8>>>>,
     pub teller: Teller,
 }
@@ -85,19 +81,20 @@ impl Server {
             #[cfg(not(unix))]
             anyhow::bail!("this system has no pseudo-terminals: serve on TCP, with --serve-tcp PORT");
         }
-        if let Some(port) = options.tcp {
-            let (place, door) = tcp::serve(port, &hub)?;
-            places.push(place);
+        let mut open = |port, hub: &Arc<Hub>| {
+            let (place, door) = hub.serve_tcp(port)?;
             doors.push(door);
+            anyhow::Ok(place)
+        };
+        if let Some(port) = options.tcp {
+            places.push(open(port, &hub)?);
         }
         let (act, acts) = sync_channel(DOWN_FRAMES);
         let mut truth = None;
         if let Some(port) = options.truth {
-            let bench = serde_json::to_string(&Bench { keys: options.keys.clone() })? + "\n";
+            let bench = serde_json::to_string(&options.keys)? + "\n";
             let hub = Hub::new(act, b'\n', Some(Frame::from(bench.as_bytes())));
-            let (place, door) = tcp::serve(port, &hub)?;
-            doors.push(door);
-            truth = Some((place, hub));
+            truth = Some((open(port, &hub)?, hub));
         }
         let teller = Teller(truth.as_ref().map(|(_, hub)| Arc::clone(hub)));
         Ok((
@@ -124,26 +121,15 @@ impl Server {
         self.acts.take()
     }
 
-    /// Ports and addresses, for `tenax monitor --port`.
     pub fn places(&self) -> &[String] {
         &self.places
     }
 
-    pub fn tally(&self) -> Tally {
-        self.hub.tally()
-    }
-
     /// Ends when every client has read what is left, at most 0.5 s later.
     pub fn close(self) -> Tally {
-        self.hub.no_more();
-        let began = Instant::now();
-        while self.hub.writers() > 0 && began.elapsed() < LAST_READ {
-            thread::sleep(Duration::from_millis(5));
-        }
-        self.hub.close();
+        self.hub.close(LAST_READ);
         if let Some((_, truth)) = &self.truth {
-            truth.no_more();
-            truth.close();
+            truth.close(Duration::ZERO);
         }
         for door in self.doors {
             let _panicked = door.join();
@@ -152,7 +138,6 @@ impl Server {
     }
 }
 
-/// Sends the scene's true state to its clients.
 #[derive(Clone, Default)]
 pub struct Teller(Option<Arc<Hub>>);
 

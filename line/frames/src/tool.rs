@@ -5,7 +5,6 @@ pub mod format;
 pub mod image;
 pub mod out;
 pub mod progress;
-pub mod status;
 pub mod workspace;
 
 use std::process::ExitCode;

@@ -1,6 +1,6 @@
 //! The true state of a served scene: lines of JSON on a TCP port of its own.
 //!
-//! The first line names what can be done at the scene's bench. Lines that are sent back, such as `g`, are done there: no message of the
+//! The first line lists what can be done at the scene's bench. Lines that are sent back, such as `g`, are done there: no message of the
 //! board's line can say them, so that no page grips with a real hand.
 
 use std::io::{BufRead, BufReader, Write};
@@ -27,7 +27,6 @@ pub struct Truth {
     pub grip_n: f64,
     /// The least that would hold, N; 0 while the hand carries nothing.
     pub needed_n: f64,
-    /// Number of unintended slips so far.
     pub slips: usize,
     /// Distance in them, mm.
     pub slipped_mm: f64,
@@ -37,16 +36,11 @@ pub struct Truth {
 /// One thing that can be done at the bench: its line, and its name for a person.
 pub type Key = (String, String);
 
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Bench {
-    pub keys: Vec<Key>,
-}
-
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Deserialize)]
+#[serde(untagged)]
 pub enum Told {
     Truth(Truth),
-    /// None: the scene is gone.
-    Bench(Option<Bench>),
+    Bench(Option<Vec<Key>>),
 }
 
 /// Listens until `tell` returns false, and again when the scene is back. Passes on what is done at the bench.
@@ -62,19 +56,13 @@ pub fn watch(target: &Target, acts: &Receiver<String>, tell: &mut dyn FnMut(Told
     }
 }
 
-/// Listens until the line ends. False: `tell` returned false.
 fn listen(line: Line, acts: &Receiver<String>, tell: &mut dyn FnMut(Told) -> bool) -> bool {
     let (mut lines, mut text, mut down) = (BufReader::new(line.up), String::new(), line.down);
     loop {
         match lines.read_line(&mut text) {
             Ok(0) => return true,
             Ok(_) => {
-                let truth = serde_json::from_str(&text).map(Told::Truth);
-                let told =
-                    truth.or_else(|_| serde_json::from_str(&text).map(|bench| Told::Bench(Some(bench))));
-                if let Ok(told) = told
-                    && !tell(told)
-                {
+                if serde_json::from_str(&text).is_ok_and(|told| !tell(told)) {
                     return false;
                 }
                 text.clear();

@@ -10,7 +10,7 @@ use tenax_hal_shim::wire::{
 use tenax_hal_shim::words::{Calibration, Fault, Kept};
 use tenax_logic::setting::SettingId;
 
-/// When a frame ended, s of the board's time.
+/// End of a frame, s of the board's time.
 pub fn seconds(frame: u32) -> f64 {
     (f64::from(frame) + 1.0) / f64::from(FRAME_HZ)
 }
@@ -26,7 +26,6 @@ pub fn names(set: DetectorSet) -> String {
     names.join(" ")
 }
 
-/// Why a frame is no message.
 pub fn why(bad: BadFrame) -> String {
     match bad {
         BadFrame::Garbled => "garbled".to_owned(),
@@ -38,36 +37,32 @@ pub fn why(bad: BadFrame) -> String {
     }
 }
 
-/// A fault for a person.
 pub fn in_words(fault: &Fault) -> String {
     let name =
         |channel: u8| CHANNELS.get(usize::from(channel)).map_or("unknown channel", |channel| channel.name);
-    let text = match *fault {
-        Fault::SensorLost { channel, reason } => {
-            return format!("{} gives no number: {reason:?}", name(channel));
-        }
-        Fault::SensorBack { channel } => return format!("{} gives numbers again", name(channel)),
-        Fault::CapabilityLost(capability) => return format!("lost: {capability:?}"),
-        Fault::CapabilityBack(capability) => return format!("back: {capability:?}"),
-        Fault::FramesLost { count } => return format!("{count} frames lost"),
-        Fault::PressedAtBoot { channel } => {
-            return format!("{} was loaded when the board started", name(channel));
-        }
+    match *fault {
+        Fault::SensorLost { channel, reason } => format!("{} gives no number: {reason:?}", name(channel)),
+        Fault::SensorBack { channel } => format!("{} gives numbers again", name(channel)),
+        Fault::CapabilityLost(capability) => format!("lost: {capability:?}"),
+        Fault::CapabilityBack(capability) => format!("back: {capability:?}"),
+        Fault::FramesLost { count } => format!("{count} frames lost"),
+        Fault::PressedAtBoot { channel } => format!("{} was loaded when the board started", name(channel)),
         Fault::RecordDamaged(kept) => {
-            return format!("the last {} to be saved are lost; older ones are used", kept_in_words(kept));
+            format!("the last {} to be saved are lost; older ones are used", kept_in_words(kept))
         }
         Fault::StoreFull(kept) => {
-            return format!("no room to save {}: switch the hand off and on again", kept_in_words(kept));
+            format!("no room to save {}: switch the hand off and on again", kept_in_words(kept))
         }
-        Fault::StoreFailed(kept) => return format!("the flash did not take {}", kept_in_words(kept)),
-        Fault::WatchdogReset => "restarted by the watchdog",
-        Fault::PanicReset => "restarted after a panic",
-        Fault::SupplySagged => "restarted because the supply sagged",
-        Fault::CrystalLost => "the crystal is lost: timing is a per cent off",
-        Fault::TooManyRestarts => "restarted too often: nothing moves before it is switched off and on",
-        Fault::NeverUnloaded => "the force sensor reads a load, and the hand is surely open",
-    };
-    text.to_owned()
+        Fault::StoreFailed(kept) => format!("the flash did not take {}", kept_in_words(kept)),
+        Fault::WatchdogReset => "restarted by the watchdog".into(),
+        Fault::PanicReset => "restarted after a panic".into(),
+        Fault::SupplySagged => "restarted because the supply sagged".into(),
+        Fault::CrystalLost => "the crystal is lost: timing is a per cent off".into(),
+        Fault::TooManyRestarts => {
+            "restarted too often: nothing moves before it is switched off and on".into()
+        }
+        Fault::NeverUnloaded => "the force sensor reads a load, and the hand is surely open".into(),
+    }
 }
 
 const fn kept_in_words(kept: Kept) -> &'static str {
@@ -79,7 +74,6 @@ const fn kept_in_words(kept: Kept) -> &'static str {
     }
 }
 
-/// Which image runs on which chip.
 pub fn identity_words(about: &About) -> String {
     let [c0, c1, c2] = about.identity.chip;
     match about.identity.build {
@@ -88,7 +82,6 @@ pub fn identity_words(about: &About) -> String {
     }
 }
 
-/// The answer to a command, for the person who gave it.
 pub fn answer_words(command: &Down, answer: &Answer) -> String {
     let said = match command {
         Down::Set(setting) => format!("set {}: ", setting_words(setting)),
@@ -101,29 +94,24 @@ pub fn answer_words(command: &Down, answer: &Answer) -> String {
     }
 }
 
-/// Why a command was refused, and what to do about it.
+/// A refusal, and what to do about it.
 pub fn refusal_words(refusal: &Refusal) -> String {
-    match refusal {
-        Refusal::OutOfRange { min, max } => format!("it has to be {min} to {max}"),
+    let text = match refusal {
+        Refusal::OutOfRange { min, max } => return format!("it has to be {min} to {max}"),
         Refusal::NotArmed => {
-            "nobody at the hand has consented: contract both muscles for 2 s or press the blue \
-                              button, then try again within a minute"
-                .to_owned()
+            "nobody at the hand has consented: contract both muscles for 2 s or press the blue button, then try again \
+             within a minute"
         }
         Refusal::HeldTooLong => {
-            "the line has silenced the reflex for too long; move a muscle, consent again, or wait \
-                                 as long"
-                .to_owned()
+            "the line has silenced the reflex for too long; move a muscle, consent again, or wait as long"
         }
-        Refusal::Loaded => "something presses on the finger, or is held".to_owned(),
-        Refusal::SensorLost => {
-            "a sensor that it needs gives no number; `tenax monitor` says which".to_owned()
-        }
-        other => format!("{other:?}"),
-    }
+        Refusal::Loaded => "something presses on the finger, or is held",
+        Refusal::SensorLost => "a sensor that it needs gives no number; `tenax monitor` says which",
+        other => return format!("{other:?}"),
+    };
+    text.to_owned()
 }
 
-/// A message, for a person.
 pub fn words(message: &Up) -> String {
     match message {
         Up::Hello { frame_hz, after } => {
@@ -154,7 +142,6 @@ pub fn words(message: &Up) -> String {
     }
 }
 
-/// What an answer tells, of this frame.
 fn told(answer: &Answer, frame: u32) -> String {
     match answer {
         Answer::Setting(own) => setting_words(own),
@@ -165,7 +152,7 @@ fn told(answer: &Answer, frame: u32) -> String {
         Answer::Last(last) => match &last.after {
             None => "nothing is kept of a run before".to_owned(),
             Some(fault) => format!(
-                "{} bytes are kept of the seconds before {} ({}): `tenax record --last` fetches them",
+                "{} bytes are kept of the seconds before {} ({})",
                 last.length,
                 in_words(fault),
                 String::from_utf8_lossy(&last.why)
@@ -179,14 +166,13 @@ fn told(answer: &Answer, frame: u32) -> String {
 fn about_words(about: &About) -> String {
     let ago_s = f64::from(about.frames) / f64::from(FRAME_HZ);
     let (identity, reset, board) = (identity_words(about), about.identity.reset, about.schema);
-    let other = match board == SCHEMA {
-        true => String::new(),
-        false => format!(
+    let mut text = format!("about: {identity}, started because of {reset:?}, {ago_s:.1} s ago");
+    if board != SCHEMA {
+        text += &format!(
             "; its messages follow schema {board:016x}, this tool's {SCHEMA:016x}: built from other sources"
-        ),
-    };
-    let settings = setting_lines(&about.settings);
-    format!("about: {identity}, started because of {reset:?}, {ago_s:.1} s ago{other}{settings}")
+        );
+    }
+    text + &setting_lines(&about.settings)
 }
 
 fn setting_lines(all: &[Setting]) -> String {
@@ -231,16 +217,14 @@ fn slow_words(slow: &Slow) -> String {
         Some(MotorDrive::Open(duty)) => text += &format!(" opening {}", duty.as_per_mille()),
         Some(MotorDrive::Coast) | None => {}
     }
-    let ever = |set: fn(&TickRecord) -> DetectorSet| {
-        names(slow.ticks.iter().fold(DetectorSet::NONE, |ever, tick| ever.or(set(tick))))
-    };
-    let sets = [
-        ("said", ever(|tick| tick.said)),
-        ("believed", ever(|tick| tick.believed)),
-        ("acted", ever(|tick| tick.acted)),
-    ];
-    for (word, names) in sets.iter().filter(|(_, names)| !names.is_empty()) {
-        text += &format!(" {word}: {names}");
+    type Set = fn(&TickRecord) -> DetectorSet;
+    let sets: [(&str, Set); 3] =
+        [("said", |tick| tick.said), ("believed", |tick| tick.believed), ("acted", |tick| tick.acted)];
+    for (word, set) in sets {
+        let ever = slow.ticks.iter().fold(DetectorSet::NONE, |ever, tick| ever.or(set(tick)));
+        if ever != DetectorSet::NONE {
+            text += &format!(" {word}: {}", names(ever));
+        }
     }
     text += if slow.lesson.is_some() { " learning" } else { "" };
     text += if slow.wearer_active { " wearer" } else { "" };
@@ -249,14 +233,13 @@ fn slow_words(slow: &Slow) -> String {
 
 fn network_words(network: &NetworkState) -> String {
     let NetworkState { updates, no_lesson, teacher_age_ms, .. } = network;
-    let mut text = format!(
-        "{} network: {updates} updates, no lesson: {no_lesson:?}, age of the teacher's picture, ms: {teacher_age_ms:?}",
+    let weights = network.weights.map(|all| all.map(|own| f64::from(own) / f64::from(1 << 27)));
+    let activations = network.activations.map(|own| f64::from(own) / f64::from(1 << 14));
+    format!(
+        "{} network: {updates} updates, no lesson: {no_lesson:?}, age of the teacher's picture, ms: {teacher_age_ms:?}\n      \
+         w: {weights:.3?}\n      t: {activations:.3?}",
         stamp(network.frame)
-    );
-    for (output, weights) in (1..).zip(&network.weights) {
-        text += &format!("\n      w{output}: {:.3?}", weights.map(|own| f64::from(own) / f64::from(1 << 27)));
-    }
-    text + &format!("\n       t: {:.3?}", network.activations.map(|own| f64::from(own) / f64::from(1 << 14)))
+    )
 }
 
 fn event_words(kind: EventKind) -> String {
@@ -283,7 +266,6 @@ fn event_words(kind: EventKind) -> String {
             format!("calibration: refused, {why}; the one before is still in force")
         }
         EventKind::Calibration(Calibration::Fit(fit)) => format!("calibration: {}", fit.name()),
-        // Such as `Armed(Button)`, `LineTrusted(true)`.
         other => format!("{other:?}"),
     }
 }

@@ -54,8 +54,8 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     let mut client = args.line.open()?;
     match &args.what {
         What::Force { weights_n } => guide::force::calibrate(&mut client, weights_n, say)?,
-        What::Friction { strokes } => guide::friction::calibrate(&mut client, *strokes, say)?,
-        What::Emg => guide::emg::calibrate(&mut client, say)?,
+        What::Friction { strokes } => guide::friction(&mut client, *strokes, say)?,
+        What::Emg => guide::emg(&mut client, say)?,
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -1,6 +1,6 @@
 //! `tenax config`: a board's settings.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::{Context, bail};
@@ -19,7 +19,7 @@ Examples:
   tenax config list
   tenax config set s1-mv=120 s2-permille=300
   tenax config export hand.toml
-  tenax config diff hand.toml
+  tenax config import hand.toml
   tenax config reset --all";
 
 /// Show and change a board's settings.
@@ -39,12 +39,13 @@ enum Command {
     /// One setting's value
     Get {
         /// The setting, such as s1-mv
-        name: String,
+        #[arg(value_name = "NAME", value_parser = settings::named)]
+        id: SettingId,
     },
     /// Change settings; each is read back
     Set {
         /// The settings and their values, such as s1-mv=120; the name's end is the unit
-        #[arg(required = true, value_name = "NAME=VALUE", value_parser = |text: &str| settings::parse(text))]
+        #[arg(required = true, value_name = "NAME=VALUE", value_parser = settings::parse)]
         settings: Vec<Setting>,
     },
     /// Write every setting to a TOML file
@@ -57,16 +58,11 @@ enum Command {
         /// A file that `tenax config export` wrote
         file: PathBuf,
     },
-    /// Settings that differ from their defaults, or from a file
-    Diff {
-        /// A file that `tenax config export` wrote [default: the defaults]
-        file: Option<PathBuf>,
-    },
     /// Set settings back to their defaults
     Reset {
         /// Names of the settings, such as s1-mv s2-permille
-        #[arg(conflicts_with = "all")]
-        names: Vec<String>,
+        #[arg(value_name = "NAME", conflicts_with = "all", value_parser = settings::named)]
+        ids: Vec<SettingId>,
         /// Reset every setting except line-trusted-flag
         #[arg(long)]
         all: bool,
@@ -74,12 +70,28 @@ enum Command {
 }
 
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
-    // An error in a file or a name is reported before the board is asked.
-    let wanted = wanted(&args.command)?;
+    let default = |id: SettingId| Setting { id: id.number(), value: id.row().default };
+    // An error in a file is reported before the board is asked.
+    let wanted: Vec<Setting> = match &args.command {
+        Command::List | Command::Get { .. } | Command::Export { .. } => Vec::new(),
+        Command::Set { settings } => settings.clone(),
+        Command::Import { file } => {
+            let text = std::fs::read_to_string(file);
+            let text = text.with_context(|| format!("cannot read {}", file.display()))?;
+            settings::of_toml(&text).with_context(|| file.display().to_string())?
+        }
+        Command::Reset { all: true, .. } => {
+            SettingId::ALL.into_iter().filter(|id| *id != SettingId::LineTrusted).map(default).collect()
+        }
+        Command::Reset { ids, .. } if ids.is_empty() => {
+            bail!("name the settings to reset, or give --all; `tenax config list` shows value and default")
+        }
+        Command::Reset { ids, .. } => ids.iter().copied().map(default).collect(),
+    };
     let mut client = args.line.open()?;
     match &args.command {
         Command::List => out::print(format_args!("{}", settings::toml(&all(&mut client)?)))?,
-        Command::Get { name } => out::say!("{}", client.setting(settings::named(name)?)?)?,
+        Command::Get { id } => out::say!("{}", client.setting(*id)?)?,
         Command::Export { file } => {
             let text = match client.ask(&Down::About, ANSWER_WITHIN)? {
                 Answer::About(about) => settings::backup(&about, &all(&mut client)?),
@@ -92,49 +104,11 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
                 }
             }
         }
-        Command::Diff { .. } => {
-            let own = all(&mut client)?;
-            for Setting { id, value } in wanted {
-                let name = SettingId::from_number(id).map_or("?", |id| id.row().name);
-                let own = own.iter().find(|setting| setting.id == id).map(|setting| setting.value);
-                if own != Some(value) {
-                    let own = own.map_or_else(|| "unknown".to_owned(), |own| own.to_string());
-                    out::say!("{name} = {own}, there {value}")?;
-                }
-            }
-        }
         Command::Set { .. } | Command::Import { .. } | Command::Reset { .. } => {
-            for setting in &wanted {
-                set(&mut client, *setting)?;
-            }
+            wanted.into_iter().try_for_each(|setting| set(&mut client, setting))?;
         }
     }
     Ok(ExitCode::SUCCESS)
-}
-
-/// The settings that a command sets or compares.
-fn wanted(command: &Command) -> anyhow::Result<Vec<Setting>> {
-    let default = |id: SettingId| Setting { id: id.number(), value: id.row().default };
-    match command {
-        Command::List | Command::Export { .. } => Ok(Vec::new()),
-        Command::Get { name } => settings::named(name).map(|_| Vec::new()),
-        Command::Set { settings } => Ok(settings.clone()),
-        Command::Diff { file: None } => Ok(SettingId::ALL.into_iter().map(default).collect()),
-        Command::Import { file } | Command::Diff { file: Some(file) } => of_file(file),
-        Command::Reset { all: true, .. } => {
-            Ok(SettingId::ALL.into_iter().filter(|id| *id != SettingId::LineTrusted).map(default).collect())
-        }
-        Command::Reset { names, .. } if names.is_empty() => {
-            bail!("name the settings to reset, or give --all; `tenax config diff` shows which differ")
-        }
-        Command::Reset { names, .. } => names.iter().map(|name| settings::named(name).map(default)).collect(),
-    }
-}
-
-/// The settings that a file names. A setting whose unit changed has another name.
-fn of_file(path: &Path) -> anyhow::Result<Vec<Setting>> {
-    let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
-    settings::of_toml(&text).with_context(|| path.display().to_string())
 }
 
 /// Every setting of the board.

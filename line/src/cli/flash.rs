@@ -3,12 +3,12 @@
 use std::path::PathBuf;
 use std::process::{Command, ExitCode};
 
-use anyhow::{Context, bail};
+use anyhow::{Context, ensure};
 
 use tenax_frames::tool::{image, out, workspace};
 
 const INSTALL: &str = "\
-probe-rs is not installed, and it is what talks to the board's ST-LINK.
+probe-rs does not start, and it is what talks to the board's ST-LINK.
 Install it with   cargo install probe-rs-tools --locked
 or as https://probe.rs/docs/getting-started/installation says, then run `tenax flash` again.";
 
@@ -42,12 +42,7 @@ The ELF's path is printed: other programmers take it, too, such as
   openocd -f board/st_nucleo_f4.cfg -c 'program FILE verify reset exit'";
 
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
-    match Command::new("probe-rs").arg("--version").output() {
-        Ok(output) if output.status.success() => {}
-        Ok(output) => bail!("probe-rs does not start: {}", String::from_utf8_lossy(&output.stderr).trim()),
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => bail!(INSTALL),
-        Err(error) => return Err(error).context("cannot start probe-rs"),
-    }
+    Command::new("probe-rs").arg("--version").output().context(INSTALL)?;
     let image = match &args.image {
         Some(image) => image.clone(),
         None => image::build(&workspace::root()?)?,
@@ -61,20 +56,17 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     };
     let mut download = probe_rs("download");
     download.args(args.verify.then_some("--verify")).arg(&image);
-    let mut reset = probe_rs("reset");
-    for command in [&mut download, &mut reset] {
-        let status = command.status().context("cannot start probe-rs")?;
-        if !status.success() {
-            bail!(
-                "probe-rs could not flash {}: see its message above; is the board plugged in, and may this user open its \
-                 USB device?",
-                image.display()
-            );
-        }
+    for command in [&mut download, &mut probe_rs("reset")] {
+        ensure!(
+            command.status()?.success(),
+            "probe-rs could not flash {}: see its message above; is the board plugged in, and may this user open its USB \
+             device?",
+            image.display()
+        );
     }
     out::say!("flashed {}; watch it with   tenax monitor", image.display())?;
     if args.log {
-        let status = probe_rs("attach").arg(&image).status().context("cannot start probe-rs")?;
+        let status = probe_rs("attach").arg(&image).status()?;
         return Ok(ExitCode::from(u8::from(!status.success())));
     }
     Ok(ExitCode::SUCCESS)

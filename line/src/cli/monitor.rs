@@ -1,6 +1,6 @@
 //! `tenax monitor`: a board's line as a page or as lines, or one that was recorded.
 
-use std::io;
+use std::io::{self, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -8,12 +8,11 @@ use anyhow::{Context, bail};
 use tenax_hal_shim::wire::{Answer, Down};
 
 use super::port;
-use crate::monitor;
 use crate::web::Web;
-use tenax_frames::link::{ANSWER_WITHIN, Client, Target};
+use tenax_frames::link::{ANSWER_WITHIN, Client, Heard, Target};
 use tenax_frames::play::Reel;
 use tenax_frames::tool::out;
-use tenax_frames::words::answer_words;
+use tenax_frames::words::{answer_words, why, words};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -93,7 +92,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     if !args.plain {
         return Ok(ExitCode::from(u8::from(refused)));
     }
-    let end = match monitor::watch(&mut client, &mut io::stdout().lock()) {
+    let end = match watch(&mut client, &mut io::stdout().lock()) {
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => return Ok(ExitCode::SUCCESS),
         other => other.context("cannot print")?,
     };
@@ -102,6 +101,23 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         Target::File(_) => Ok(ExitCode::SUCCESS),
         _ => {
             bail!("{target} is gone ({end}): plug the board in or start the served run again, and then this")
+        }
+    }
+}
+
+/// Prints messages, gaps and bad frames until the line ends; the reason. Fails if it cannot print.
+pub fn watch(client: &mut Client, out: &mut dyn Write) -> io::Result<io::Error> {
+    loop {
+        match client.next_frame() {
+            Ok(Some(Ok(Heard { received, missed }))) => {
+                if missed > 0 {
+                    writeln!(out, "# {missed} messages missed")?;
+                }
+                writeln!(out, "{:>5} {}", received.sequence, words(&received.message))?;
+            }
+            Ok(Some(Err(bad))) => writeln!(out, "# frame skipped: {}", why(bad))?,
+            Ok(None) => out.flush()?,
+            Err(end) => return out.flush().map(|()| end),
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use anyhow::bail;
 use serialport::SerialPortType;
-use tenax_frames::link::{Client, Target};
+use tenax_frames::link::{Client, Target, port_names};
 
 /// Vendor id of the board's ST-LINK.
 const ST: u16 = 0x0483;
@@ -31,14 +31,11 @@ pub fn or_found(named: Option<&Target>) -> anyhow::Result<Target> {
         ports.iter().filter(|port| is_board(&port.port_type)).map(|port| port.port_name.as_str()).collect();
     match boards[..] {
         [only] => Ok(Target::Port(only.to_owned())),
-        [] => {
-            let seen: Vec<&str> = ports.iter().map(|port| port.port_name.as_str()).collect();
-            let seen = if seen.is_empty() { "none at all".to_owned() } else { seen.join(", ") };
-            bail!(
-                "no board is plugged in; serial ports on this machine: {seen}. Name one with --port, or a scene's line, \
-                 which `tenax run --serve` prints"
-            )
-        }
+        [] => bail!(
+            "no board is plugged in; serial ports on this machine: {}. Name one with --port, or a scene's line, which \
+             `tenax run --serve` prints",
+            port_names()
+        ),
         _ => bail!("several boards are plugged in: name one with --port: {}", boards.join(", ")),
     }
 }

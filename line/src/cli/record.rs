@@ -1,21 +1,21 @@
 //! `tenax record`: a board's line into an MCAP file.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::time::{Duration, Instant};
 
-use anyhow::{Context, bail};
+use anyhow::Context;
 use tenax_hal_shim::wire::{Answer, Down, Setting, Up};
 use tenax_logic::setting::SettingId;
 
 use super::port::Line;
-use tenax_frames::link::{ANSWER_WITHIN, Client, LastSeconds};
+use tenax_frames::link::{ANSWER_WITHIN, Client};
 use tenax_frames::record::{self, Recording};
 use tenax_frames::tool::out;
-use tenax_frames::tool::status::Status;
-use tenax_frames::words::{in_words, seconds};
+use tenax_frames::tool::progress::Progress;
+use tenax_frames::words::seconds;
 
 /// Settings are saved every 3 s at most.
 const SAVED_WITHIN: Duration = Duration::from_secs(4);
@@ -32,57 +32,44 @@ pub struct Args {
     /// Length, s [default: until Ctrl-C or the end of the line]
     #[arg(long, value_name = "S")]
     seconds: Option<f64>,
-    /// For hours: no frames, and only the topics /line, /state (20 a second), /event, /counters and /setting. `tenax play
-    /// --csv` restores the other topics
-    #[arg(long)]
-    compact: bool,
     /// Begin at the board's next start, so that `tenax run --replay` can replay the recording: sets stream-at-start-flag, then
     /// waits until somebody presses the board's reset button
-    #[arg(long, conflicts_with_all = ["compact", "last"])]
+    #[arg(long)]
     from_start: bool,
-    /// Fetch the last 2 to 3 s before a fault from the board instead; the board then deletes them
-    #[arg(long, conflicts_with_all = ["seconds", "compact"])]
-    last: bool,
 }
 
 const EXAMPLES: &str = "\
 Examples:
   tenax record --out walk.mcap                 until Ctrl-C, with every frame
-  tenax record --compact --seconds 3600        less than 60 MB an hour, without frames
-  tenax record --last --out fault.mcap         after a fault: the seconds before the restart
-  tenax plot fault.mcap                        draws any of them
-
-  tenax record --from-start --out fault.mcap   from the board's reset on, for `tenax run --replay`";
+  tenax plot walk.mcap                         draws it
+  tenax record --from-start --out whole.mcap   from the board's reset on, for `tenax run --replay`";
 
 /// Records until the time is over, the line ends or Ctrl-C.
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     let mut client = args.line.open()?;
     let path = args.out.clone().unwrap_or_else(record::name_now);
-    if args.last {
-        return last(&mut client, &path);
-    }
-    let mut recording = if args.compact { Recording::compact(&path) } else { Recording::create(&path) }?;
+    let mut recording = Recording::create(&path)?;
     if args.from_start {
         stream_at_start(&mut client)?;
+    } else if client.can_send() {
+        client.send(&Down::About)?;
     }
     let stopped = Arc::new(AtomicBool::new(false));
     signal_hook::flag::register(signal_hook::consts::SIGINT, Arc::clone(&stopped))
         .context("cannot listen for Ctrl-C")?;
-    if !args.from_start && client.can_send() {
-        client.send(&Down::About)?;
-    }
-    let status = Status::new("record");
+    let status = Progress::new("record", 1.0);
     let (mut began, mut waits, mut is_joined) = (Instant::now(), args.from_start, false);
     let is_over = |began: Instant| args.seconds.is_some_and(|s| began.elapsed().as_secs_f64() >= s);
     while !stopped.load(Relaxed) && (waits || !is_over(began)) {
         if !waits {
-            client.keep_streaming(!args.compact)?;
+            client.keep_streaming(true)?;
         }
         match client.next_message() {
             Ok(Some(heard)) if waits && !matches!(heard.received.message, Up::Hello { .. }) => {}
             Ok(Some(heard)) => {
                 if std::mem::take(&mut waits) {
-                    status.print(|| out::note!("the board has started: recording"));
+                    status.clear();
+                    out::note!("the board has started: recording");
                     began = Instant::now();
                 }
                 let first = match &heard.received.message {
@@ -91,13 +78,12 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
                     _ => None,
                 };
                 if let Some(frame @ 1..) = first.filter(|_| !is_joined) {
-                    status.print(|| {
-                        out::note!(
-                            "it begins {:.1} s after the board's start: it can be watched, plotted and exported, but not \
-                             replayed. For one that can be: tenax record --from-start",
-                            seconds(frame)
-                        );
-                    });
+                    status.clear();
+                    out::note!(
+                        "it begins {:.1} s after the board's start: it can be watched, plotted and exported, but not \
+                         replayed. For one that can be: tenax record --from-start",
+                        seconds(frame)
+                    );
                 }
                 is_joined |= first.is_some();
                 recording.take(&heard.received);
@@ -105,12 +91,11 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
             Ok(None) => {}
             Err(_) => break,
         }
-        status.say_with(|_| client.counts().to_string());
+        status.say(|_| client.counts().to_string());
     }
-    drop(status);
     recording.finish().with_context(|| format!("cannot write {}", path.display()))?;
-    let lasted = Duration::from_secs(began.elapsed().as_secs());
-    out::note!("{} in {lasted:?}, written to {}", client.counts(), path.display());
+    status.clear();
+    out::note!("{}, written to {}", client.counts(), path.display());
     Ok(ExitCode::SUCCESS)
 }
 
@@ -126,25 +111,4 @@ fn stream_at_start(client: &mut Client) -> anyhow::Result<()> {
     }
     out::note!("Press the board's black reset button (at a served bench, type `reset` with Enter).");
     Ok(())
-}
-
-/// Records what the board keeps of a run that ended in a fault.
-fn last(client: &mut Client, path: &Path) -> anyhow::Result<ExitCode> {
-    let Some(kept) = LastSeconds::fetch(client)? else {
-        bail!(
-            "the board keeps nothing: its last run did not end in a fault, it was switched off since, or somebody has fetched it"
-        );
-    };
-    let mut recording = Recording::create(path)?;
-    recording.line(&kept.line);
-    recording.finish().with_context(|| format!("cannot write {}", path.display()))?;
-    LastSeconds::let_go(client)?;
-    out::note!(
-        "before {}{}: {} bytes, written to {}",
-        in_words(&kept.after),
-        if kept.why.is_empty() { String::new() } else { format!(" ({})", kept.why) },
-        kept.line.len(),
-        path.display()
-    );
-    Ok(ExitCode::SUCCESS)
 }

@@ -5,7 +5,6 @@ use std::time::Duration;
 
 use tenax_hal_shim::channel::SLOW_HZ;
 use tenax_hal_shim::wire::Down;
-use tenax_logic::setting::SettingId;
 
 use super::{Say, ask, forces, wait_for};
 use tenax_frames::link::Client;
@@ -19,30 +18,22 @@ const STILL_N: f64 = 0.04;
 const BETWEEN: (f64, f64) = (0.5, 2.0);
 /// Part of a weight below which it is taken off.
 const OFF_PART: f64 = 0.1;
-/// Time for a person.
 const PATIENCE: Duration = Duration::from_secs(120);
 /// Largest error of a gain that needs no change.
 const GAIN_OFF: f64 = 0.05;
-const COMPARED: [SettingId; 2] = [SettingId::ForceCeiling, SettingId::Loaded];
 /// Standard gravity, m/s^2.
 const GRAVITY: f64 = 9.806_65;
 
-/// A weight and the board's reading of it, N.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Weighed {
     true_n: f64,
     read_n: f64,
 }
 
-/// The reading of 1 N, by least squares through no load.
-fn gain(weighed: &[Weighed]) -> f64 {
-    let sum = |product: fn(&Weighed) -> f64| weighed.iter().map(product).sum::<f64>();
-    sum(|own| own.read_n * own.true_n) / sum(|own| own.true_n * own.true_n)
-}
-
-/// The table of the weights, and what follows from it.
 fn report(weighed: &[Weighed]) -> String {
-    let gain = gain(weighed);
+    let sum = |product: fn(&Weighed) -> f64| weighed.iter().map(product).sum::<f64>();
+    // The reading of 1 N, by least squares through no load.
+    let gain = sum(|own| own.read_n * own.true_n) / sum(|own| own.true_n * own.true_n);
     let mut text =
         format!("{:>10}{:>10}{:>12}{:>16}\n", "weight, N", "read, N", "error, %", "off the line, %");
     let mut worst = 0.0_f64;
@@ -55,23 +46,10 @@ fn report(weighed: &[Weighed]) -> String {
     if worst > 10.0 {
         text + "the line is not straight: another sensor, another resistor beside it, or a weight off its middle"
     } else if (gain - 1.0).abs() > GAIN_OFF {
-        text + "change the amplifier by the inverse of that. Until then every force that the board shows is that much off, and\n"
-            + &format!("  tenax config set{}\n", settings(gain))
-            + "has the hand do at these forces what the defaults say"
+        text + "change the amplifier by the inverse of that: until then every force that the board shows is that much off"
     } else {
         text + "within 5 %: nothing to do. The zero is kept on the board"
     }
-}
-
-/// The settings that the reflex compares a load with, scaled as if the sensor read right. A gain on the board would not do: a wrong one
-/// would move the ceiling far more than a setting of it may.
-fn settings(gain: f64) -> String {
-    let scaled = COMPARED.map(|id| {
-        let row = id.row();
-        let value = (f64::from(row.default) * gain).round() as i32;
-        format!(" {}={}", row.name, value.clamp(row.min, row.max))
-    });
-    scaled.concat()
 }
 
 /// Zeroes the unloaded finger, asks for one weight after the other and tells the errors. Fails if the board refuses, or a weight never comes.
@@ -122,16 +100,12 @@ mod tests {
 
     #[test]
     fn a_gain_is_told_from_a_curve() {
-        let weighed =
-            |read: fn(f64) -> f64| [1.0, 2.0, 5.0].map(|true_n| Weighed { true_n, read_n: read(true_n) });
-        let of = |read: fn(f64) -> f64| report(&weighed(read));
-        assert!((gain(&weighed(|n| 1.2 * n)) - 1.2).abs() < 1e-9);
+        let of = |read: fn(f64) -> f64| {
+            report(&[1.0, 2.0, 5.0].map(|true_n| Weighed { true_n, read_n: read(true_n) }))
+        };
         let told = of(|n| 1.2 * n);
         assert!(told.contains("        20.0 "), "{told}");
-        assert!(told.contains("change the amplifier"), "{told}");
-        assert!(told.contains("\n  tenax config set force-ceiling-mn=48000 loaded-mn=720\n"), "{told}");
-        // At most what a setting may be: an earlier ceiling or load is the safe side.
-        assert!(of(|n| 1.8 * n).contains("force-ceiling-mn=60000 "));
+        assert!(told.contains("reads 1.200 N for 1 N") && told.contains("change the amplifier"), "{told}");
         assert!(of(|n| n * n.sqrt()).contains("not straight"));
         assert!(of(|n| 1.01 * n).contains("nothing to do"));
     }

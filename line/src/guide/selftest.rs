@@ -1,21 +1,20 @@
 //! Tests every sensor's wire: at rest each has its level, and what is touched is what moves.
 //!
-//! A prompt begins with the verb and the channel's name: it can
-//! be piped to a served scene's bench.
-
-mod session;
-
-pub use self::session::{named, run};
+//! A prompt begins with the verb and the channel's name: it can be piped to a served scene's bench.
 
 use std::time::{Duration, Instant};
 
+use anyhow::{Context, bail};
 use serde::Serialize;
+use tenax_frames::link::Client;
 use tenax_hal_shim::channel::{
     CHANNELS, COUNT, Channel, FRAME_HZ, MOTOR_CURRENT, OPENING, PVDF, PVDF_COUNT, REFERENCE_MV, Role,
-    SAMPLE_MAX,
+    SAMPLE_MAX, by_name,
 };
 use tenax_hal_shim::wire::{Senses, Up};
+use tenax_logic::setting::SettingId;
 
+use super::Say;
 use crate::tables::input;
 
 /// Time at rest, and of a touch once something moves, frames.
@@ -36,9 +35,6 @@ const ALIKE: f64 = 0.25;
 const ALIKE_LOUD: f64 = 0.7;
 /// A channel of the asked kind that moved by this part of the loudest is the one that moved.
 const BROTHERS: f64 = 0.5;
-/// Exchanged pairs of one switch from which on its select lines are suspect.
-const SELECT_LINES: usize = 3;
-
 const REST_PROMPT: &str = "Touch nothing and relax for 2 s.";
 
 /// The least move of a touched sensor; and how far below and above its rest it may stand, mV.
@@ -56,23 +52,36 @@ const fn demands(role: Role) -> (f64, [f64; 2]) {
     }
 }
 
-/// Voltages and moves in mV.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Verdict {
     /// It moved by this, or stands right and cannot be touched.
     Pass(f64),
     Dead(f64),
     Shorted(f64),
-    /// It never changes.
     Stuck(f64),
     /// It does not stand where its kind does.
     Off(f64),
-    /// Nothing moved.
     Silent,
     /// This channel moved in its place.
     Moved(usize),
     /// This channel reads the same.
     Bridged(usize),
+}
+
+impl Verdict {
+    pub fn words(self, channel: usize) -> String {
+        let Channel { rest_mv, name, .. } = CHANNELS[channel];
+        match self {
+            Self::Pass(mv) => format!("{name}: {mv:.0} mV"),
+            Self::Dead(mv) => format!("{mv:.0} mV: a cut wire, a short to ground, or no supply"),
+            Self::Shorted(mv) => format!("{mv:.0} mV: a short to the supply, or out of range"),
+            Self::Stuck(mv) => format!("always {mv:.0} mV: an open switch, or a select line"),
+            Self::Off(mv) => format!("rests at {mv:.0} mV, not {rest_mv}: another's wire, or reference"),
+            Self::Silent => "nothing moves: wire cut at the sensor, or deaf".to_owned(),
+            Self::Moved(other) => format!("{} moves in its place", wire(other)),
+            Self::Bridged(other) => format!("{} does the same: the two wires touch", wire(other)),
+        }
+    }
 }
 
 /// A channel and its input: `fsr_a (switch A, 12)`.
@@ -83,19 +92,10 @@ fn wire(channel: usize) -> String {
 /// Readings of all channels, mV, then the films' envelopes.
 type Row = [f64; COUNT + PVDF_COUNT];
 
-fn row(senses: &Senses) -> Row {
-    let mut row = [0.0; COUNT + PVDF_COUNT];
-    for (mv, sample) in row.iter_mut().zip(senses.samples.iter().chain(&senses.films)) {
-        *mv = f64::from(*sample) * f64::from(REFERENCE_MV) / f64::from(SAMPLE_MAX);
-    }
-    row
-}
-
 fn mean(rows: &[Row]) -> Row {
     std::array::from_fn(|n| rows.iter().map(|row| row[n]).sum::<f64>() / rows.len() as f64)
 }
 
-/// Reading of the channel that is asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Level {
     pub mv: f64,
@@ -116,19 +116,15 @@ enum Step {
 
 pub struct Selftest {
     roles: [Role; COUNT],
-    /// In the order in which they are asked for.
     pub channels: Vec<usize>,
     /// None: the channel was not asked for.
     pub verdicts: [Option<Verdict>; COUNT],
-    /// Lines for the person, the oldest first.
     pub said: Vec<String>,
-    /// Why the test cannot go on.
     pub failed: Option<String>,
     heard: Instant,
     limit: u32,
     step: Step,
     began: Option<u32>,
-    /// Frame of the newest reading.
     last: u32,
     rows: Vec<Row>,
     /// Mean of the last readings in which nothing moved: what is held, creeps or drifts is no touch.
@@ -137,10 +133,15 @@ pub struct Selftest {
 }
 
 impl Selftest {
-    /// Of these channels, each touched within `limit_s`. `head_is_fitted`: a photoelastic head is in the place of a film.
-    pub fn new(channels: Vec<usize>, head_is_fitted: bool, limit_s: u32) -> Self {
-        Self {
-            roles: std::array::from_fn(|channel| Role::of(channel, head_is_fitted)),
+    /// A test of channels of these names or prefixes, each touched within `limit_s`. `head`: a photoelastic head is in the place of a
+    /// film. Without names: all, but for a gripper without a wearer no muscles. Fails on a name that fits none.
+    pub fn named(words: &[String], head: bool, no_wearer: bool, limit_s: u32) -> anyhow::Result<Self> {
+        let mut channels = named(words)?;
+        if words.is_empty() && no_wearer {
+            channels.retain(|&channel| Role::of(channel, head) != Role::Muscle);
+        }
+        Ok(Self {
+            roles: std::array::from_fn(|channel| Role::of(channel, head)),
             channels,
             verdicts: [None; COUNT],
             said: vec![
@@ -156,14 +157,17 @@ impl Selftest {
             rows: Vec::new(),
             rest_mv: [0.0; COUNT + PVDF_COUNT],
             noise_mv: [0.0; COUNT + PVDF_COUNT],
-        }
+        })
+    }
+
+    fn is_silent(&self) -> bool {
+        self.heard.elapsed() > SILENCE
     }
 
     pub fn is_over(&self) -> bool {
         self.step == Step::Over
     }
 
-    /// The instruction for now.
     pub fn prompt(&self) -> String {
         match self.step {
             Step::Rest => REST_PROMPT.to_owned(),
@@ -173,7 +177,6 @@ impl Selftest {
         }
     }
 
-    /// Reading of the channel that is asked for.
     pub fn level(&self) -> Option<Level> {
         let Step::Asked(n, ..) = self.step else { return None };
         let (asked, row) = (self.channels[n], self.rows.last()?);
@@ -181,7 +184,6 @@ impl Selftest {
         Some(Level { mv: row[asked], moved_mv: self.moved(row, asked) * needed_mv, needed_mv })
     }
 
-    /// Leaves out the channel that is asked for.
     pub fn skip(&mut self) {
         if let Step::Asked(n, ..) = self.step {
             self.begin(Step::Stills(n + 1, false), self.last);
@@ -189,30 +191,31 @@ impl Selftest {
         }
     }
 
-    /// Takes a message, or notes that none came. A board that sends no readings or starts anew fails the test.
-    pub fn take(&mut self, message: Option<&Up>) {
+    /// Takes a message. A board that sends no readings or starts anew fails the test.
+    pub fn take(&mut self, message: &Up) {
         match message {
             _ if self.is_over() || self.failed.is_some() => {}
-            Some(Up::Senses(senses)) => self.hear(senses),
-            Some(Up::Hello { .. }) if self.began.is_some() => {
+            Up::Senses(senses) => self.hear(senses),
+            Up::Hello { .. } if self.began.is_some() => {
                 self.fail("the board was switched on anew: start again");
             }
-            _ if self.heard.elapsed() > SILENCE => self.fail("the board sends no readings"),
+            _ if self.is_silent() => self.fail("the board sends no readings"),
             _ => {}
         }
     }
 
-    /// Ends the test, unless it is over.
     pub fn fail(&mut self, why: &str) {
         if !self.is_over() {
             self.failed.get_or_insert_with(|| why.to_owned());
         }
     }
 
-    /// Takes readings.
     pub fn hear(&mut self, senses: &Senses) {
         let since = senses.frame.wrapping_sub(*self.began.get_or_insert(senses.frame));
-        let row = row(senses);
+        let mut row = [0.0; COUNT + PVDF_COUNT];
+        for (mv, sample) in row.iter_mut().zip(senses.samples.iter().chain(&senses.films)) {
+            *mv = f64::from(*sample) * f64::from(REFERENCE_MV) / f64::from(SAMPLE_MAX);
+        }
         (self.last, self.heard) = (senses.frame, Instant::now());
         self.rows.push(row);
         match self.step {
@@ -231,8 +234,11 @@ impl Selftest {
             Step::Stills(n, again) => {
                 let last = self.rows.len().saturating_sub(STILL);
                 self.rows.drain(..last);
-                if self.rows.len() >= STILL && (self.is_still() || since >= STILL_WITHIN) {
-                    self.rest_mv = mean(&self.rows);
+                let mean = mean(&self.rows);
+                let from_mean = |row: &Row| std::array::from_fn(|n| self.rest_mv[n] + row[n] - mean[n]);
+                let is_still = || self.rows.iter().all(|row| !self.moves(&from_mean(row)));
+                if self.rows.len() >= STILL && (since >= STILL_WITHIN || is_still()) {
+                    self.rest_mv = mean;
                     self.ask(n, again, senses.frame);
                 }
             }
@@ -252,26 +258,23 @@ impl Selftest {
         self.rest_mv = mean(&self.rows);
         self.noise_mv = std::array::from_fn(|n| self.most_mv(n));
         for &channel in &self.channels {
-            let (rest_mv, Channel { low_mv, high_mv, .. }) = (self.rest_mv[channel], &CHANNELS[channel]);
-            self.verdicts[channel] = if rest_mv < f64::from(*low_mv).max(DEAD_MV) {
-                Some(Verdict::Dead(rest_mv))
-            } else if rest_mv > f64::from(*high_mv).min(SHORT_MV) {
-                Some(Verdict::Shorted(rest_mv))
+            let (at_mv, Channel { low_mv, high_mv, rest_mv, .. }) =
+                (self.rest_mv[channel], &CHANNELS[channel]);
+            let (_, [below, above]) = demands(self.roles[channel]);
+            let stands = -below..=above;
+            self.verdicts[channel] = if at_mv < f64::from(*low_mv).max(DEAD_MV) {
+                Some(Verdict::Dead(at_mv))
+            } else if at_mv > f64::from(*high_mv).min(SHORT_MV) {
+                Some(Verdict::Shorted(at_mv))
             } else if self.noise_mv[channel] < 1e-6 {
-                Some(Verdict::Stuck(rest_mv))
-            } else if self.is_off(channel) {
-                Some(Verdict::Off(rest_mv))
+                Some(Verdict::Stuck(at_mv))
+            } else if channel != OPENING && !stands.contains(&(at_mv - f64::from(*rest_mv))) {
+                // The hand's opening may stand anywhere.
+                Some(Verdict::Off(at_mv))
             } else {
-                (channel == MOTOR_CURRENT).then_some(Verdict::Pass(rest_mv))
+                (channel == MOTOR_CURRENT).then_some(Verdict::Pass(at_mv))
             };
         }
-    }
-
-    /// Whether it stands where no sensor of its kind does. The hand's opening may stand anywhere.
-    fn is_off(&self, channel: usize) -> bool {
-        let (_, [below, above]) = demands(self.roles[channel]);
-        let off_mv = self.rest_mv[channel] - f64::from(CHANNELS[channel].rest_mv);
-        channel != OPENING && !(-below..=above).contains(&off_mv)
     }
 
     /// Asks for the channel in this place, or for the next that a touch can test.
@@ -290,7 +293,6 @@ impl Selftest {
         self.said.push(self.asks(n, again));
     }
 
-    /// The prompt for the channel in this place.
     fn asks(&self, n: usize, again: bool) -> String {
         let channel = self.channels[n];
         let (name, of) = (CHANNELS[channel].name, self.channels.len());
@@ -311,9 +313,7 @@ impl Selftest {
                 continue;
             }
             let swapped = (0..COUNT).find(|&n| self.verdicts[n] == Some(Verdict::Moved(channel)));
-            if let Some(swapped) = swapped {
-                self.verdicts[channel] = Some(Verdict::Moved(swapped));
-            }
+            self.verdicts[channel] = Some(Verdict::Moved(swapped.unwrap_or(other)));
         }
     }
 
@@ -332,14 +332,6 @@ impl Selftest {
         (0..COUNT).any(|channel| self.moved(row, channel) >= 1.0)
     }
 
-    /// Whether nothing moved in the last readings.
-    fn is_still(&self) -> bool {
-        let mean = mean(&self.rows);
-        let from_mean = |row: &Row| std::array::from_fn(|n| self.rest_mv[n] + row[n] - mean[n]);
-        self.rows.iter().all(|row| !self.moves(&from_mean(row)))
-    }
-
-    /// Judges a touch.
     fn touched(&mut self, n: usize, again: bool, frame: u32) {
         let asked = self.channels[n];
         let peak = |channel: usize| self.rows.iter().map(|row| self.moved(row, channel)).fold(0.0, f64::max);
@@ -367,18 +359,15 @@ impl Selftest {
         // The wrong sensor may have been touched.
         let repeats = matches!(verdict, Verdict::Moved(_)) && !again;
         // A verdict from before outweighs silence.
-        let keeps = match verdict {
-            Verdict::Silent => stands_off || again,
-            Verdict::Pass(_) => stands_off,
-            _ => false,
-        };
-        if !keeps {
-            self.verdicts[asked] = Some(verdict);
+        match verdict {
+            Verdict::Silent if again => {}
+            Verdict::Silent | Verdict::Pass(_) if stands_off => {}
+            _ => self.verdicts[asked] = Some(verdict),
         }
         self.said.push(match verdict {
             Verdict::Pass(_) if stands_off => "   moves".to_owned(),
             Verdict::Pass(mv) => format!("   pass, {mv:.0} mV"),
-            other => format!("   FAIL: {}", self.words(asked, other)),
+            other => format!("   FAIL: {}", other.words(asked)),
         });
         self.begin(Step::Stills(if repeats { n } else { n + 1 }, repeats), frame);
     }
@@ -401,59 +390,25 @@ impl Selftest {
         moved > 0.0 && apart < ALIKE * moved && self.moved(&row, other) < 1.0
     }
 
-    /// A verdict for a person.
-    pub fn words(&self, channel: usize, verdict: Verdict) -> String {
-        let Channel { rest_mv, name, .. } = CHANNELS[channel];
-        match verdict {
-            Verdict::Pass(mv) => format!("{name}: {mv:.0} mV"),
-            Verdict::Dead(mv) => format!("{mv:.0} mV: a cut wire, a short to ground, or no supply"),
-            Verdict::Shorted(mv) => format!("{mv:.0} mV: a short to the supply, or out of range"),
-            Verdict::Stuck(mv) => format!("always {mv:.0} mV: an open switch, or a select line"),
-            Verdict::Off(mv) => format!("rests at {mv:.0} mV, not {rest_mv}: another's wire, or reference"),
-            Verdict::Silent => "nothing moves: wire cut at the sensor, or deaf".to_owned(),
-            Verdict::Moved(other) => format!("{} moves in its place", wire(other)),
-            Verdict::Bridged(other) => format!("{} does the same: the two wires touch", wire(other)),
-        }
-    }
-
     /// A line for each fault, and the count.
     fn summary(&self) -> Vec<String> {
         let mut lines = vec![String::new()];
         let passes = |channel: usize| matches!(self.verdicts[channel], Some(Verdict::Pass(_)));
-        let is_moved = |channel: usize| matches!(self.verdicts[channel], Some(Verdict::Moved(_)));
-        for switch in ["A", "B"] {
-            let stem = format!("switch {switch},");
-            let on: Vec<usize> =
-                self.channels.iter().copied().filter(|&n| input(n).starts_with(&stem)).collect();
-            let exchanged = on.iter().filter(|&&n| is_moved(n)).count();
-            // Where wires are only exchanged the switch works.
-            let fails = |&n: &usize| self.verdicts[n].is_some() && !passes(n) && !is_moved(n);
-            if on.len() > 1 && on.iter().all(fails) {
-                lines.push(format!(
-                    "All of switch {switch} fails: its supply, its enable, its output's wire."
-                ));
-            } else if exchanged >= 2 * SELECT_LINES {
-                lines.push(format!(
-                    "{exchanged} of switch {switch} are exchanged: look at the select lines, PB12 to PB15."
-                ));
-            }
-        }
         for &channel in self.channels.iter().filter(|&&channel| !passes(channel)) {
-            let wrong = match self.verdicts[channel] {
-                None => "left out, not tested".to_owned(),
+            let wire_name = wire(channel);
+            lines.push(match self.verdicts[channel] {
+                None => format!("{wire_name}: left out, not tested"),
                 // The other side has been named.
                 Some(Verdict::Moved(other))
-                    if self.verdicts[other] == Some(Verdict::Moved(channel)) && other < channel =>
+                    if other < channel && self.verdicts[other] == Some(Verdict::Moved(channel)) =>
                 {
                     continue;
                 }
                 Some(Verdict::Moved(other)) => {
-                    lines.push(format!("{} and {}: exchange their wires", wire(channel), wire(other)));
-                    continue;
+                    format!("{wire_name} and {}: exchange their wires", wire(other))
                 }
-                Some(verdict) => self.words(channel, verdict),
-            };
-            lines.push(format!("{}: {wrong}", wire(channel)));
+                Some(verdict) => format!("{wire_name}: {}", verdict.words(channel)),
+            });
         }
         let passed = self.channels.iter().filter(|&&channel| passes(channel)).count();
         lines.push(format!("{passed} of {} channels pass", self.channels.len()));
@@ -462,5 +417,41 @@ impl Selftest {
 
     pub fn passes(&self) -> bool {
         self.channels.iter().all(|&channel| matches!(self.verdicts[channel], Some(Verdict::Pass(_))))
+    }
+}
+
+/// The channels of these names or prefixes; without any, all. Fails on a word that fits none.
+fn named(words: &[String]) -> anyhow::Result<Vec<usize>> {
+    let fits = |n: usize, word: &String| match by_name(word) {
+        Some(only) => n == only,
+        None => CHANNELS[n].name.starts_with(word.as_str()),
+    };
+    if let Some(word) = words.iter().find(|word| !(0..COUNT).any(|n| fits(n, word))) {
+        bail!("no channel begins with `{word}`: `tenax tables wiring` has them");
+    }
+    Ok((0..COUNT).filter(|&n| words.is_empty() || words.iter().any(|word| fits(n, word))).collect())
+}
+
+/// Runs the test to its end; whether all channels pass.
+pub fn run(client: &mut Client, words: &[String], limit_s: u32, say: Say<'_>) -> anyhow::Result<bool> {
+    let (head, no_wearer) =
+        (client.setting(SettingId::Head)? != 0, client.setting(SettingId::NoWearer)? != 0);
+    let mut test = Selftest::named(words, head, no_wearer, limit_s)?;
+    let mut printed = 0;
+    loop {
+        test.said[printed..].iter().try_for_each(|line| say(line))?;
+        printed = test.said.len();
+        if let Some(why) = &test.failed {
+            bail!("{why}");
+        }
+        if test.is_over() {
+            return Ok(test.passes());
+        }
+        client.keep_streaming(false)?;
+        if let Some(heard) = client.next_message().context("the line ended")? {
+            test.take(&heard.received.message);
+        } else if test.is_silent() {
+            bail!("the board sends nothing");
+        }
     }
 }

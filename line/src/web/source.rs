@@ -6,7 +6,7 @@ use std::thread;
 use std::time::Duration;
 
 use tenax_frames::link::{ANSWER_WITHIN, Client, Counts, Heard, Target};
-use tenax_frames::play::{self, Playing, Reel};
+use tenax_frames::play::{self, Reel};
 use tenax_frames::truth;
 use tenax_hal_shim::wire::{Answer, BadFrame, Down};
 
@@ -15,7 +15,6 @@ const AGAIN_AFTER: Duration = Duration::from_millis(500);
 #[derive(Debug)]
 pub enum News {
     Open,
-    /// The line is gone, with the reason.
     Gone(String),
     /// A message, or why a frame is none; the counts so far.
     Frame(Result<Heard, BadFrame>, Counts),
@@ -53,10 +52,7 @@ pub fn start(
 
 fn watch_recording(path: &Path, controls: &Receiver<String>, news: &Sender<News>) -> anyhow::Result<()> {
     let reel = Reel::open(path)?;
-    let playing = Playing::new(&reel);
-    let mut tell = |told| news.send(News::Played(told)).is_ok();
-    tell(play::Told::At(playing));
-    play::play(&reel, playing, controls, &mut tell);
+    play::play(&reel, controls, &mut |told| news.send(News::Played(told)).is_ok());
     Ok(())
 }
 

@@ -9,7 +9,7 @@ use tenax_frames::link::{Counts, Heard};
 use tenax_frames::play;
 use tenax_frames::settings;
 use tenax_frames::truth;
-use tenax_frames::words::{answer_words, seconds, why, words};
+use tenax_frames::words::{answer_words, in_words, seconds, why, words};
 use tenax_hal_shim::channel::{CHANNELS, mv_from_sample};
 use tenax_hal_shim::detector::{DetectorId, DetectorSet};
 use tenax_hal_shim::wire::{About, Answer, BadFrame, EventKind, Setting, Slow, TickRecord, Up};
@@ -20,7 +20,6 @@ use super::source::News;
 use crate::guide::selftest::{Selftest, Verdict};
 use crate::tables::input;
 
-/// Slow frames (10 s) and lines of the log for a page that is opened later.
 const HISTORY: usize = 800;
 const LOG: usize = 500;
 /// Changes that a page may be behind: 20 s. A page that is further behind is dropped, and connects again.
@@ -40,9 +39,6 @@ pub struct View {
     /// Lost channels and capabilities, each with its words.
     faults: BTreeMap<String, String>,
     selftest: Option<Selftest>,
-    /// Self-tests that were begun, and lines of the last that pages have.
-    selftests: u64,
-    lines: usize,
 }
 
 fn push<T>(all: &mut VecDeque<T>, most: usize, one: T) {
@@ -52,12 +48,7 @@ fn push<T>(all: &mut VecDeque<T>, most: usize, one: T) {
     all.push_back(one);
 }
 
-fn thousandths(value: impl Into<f64>) -> f64 {
-    value.into() / 1e3
-}
-
 impl View {
-    /// The merged changes.
     pub const fn state(&self) -> &Map<String, Value> {
         &self.state
     }
@@ -68,7 +59,6 @@ impl View {
         let mut state = self.state.clone();
         state.insert("log".to_owned(), json!(self.log));
         state.insert("points".to_owned(), json!(self.points));
-        state.insert("selftest".to_owned(), self.selftest_state(0));
         // There is room.
         let _sent = page.try_send(Value::Object(state));
         self.pages.push(page);
@@ -81,15 +71,12 @@ impl View {
         self.pages.retain(|page| page.try_send(change.clone()).is_ok());
     }
 
-    /// Adds a line to the log.
     pub fn say(&mut self, line: &str) {
         push(&mut self.log, LOG, line.trim_start().to_owned());
         self.tell(json!({ "log": [line.trim_start()] }));
     }
 
-    /// Takes what came, and tells the pages.
     pub fn take(&mut self, news: News) {
-        self.test(&news);
         match news {
             News::Open => {
                 self.tell(json!({ "gone": null }));
@@ -98,6 +85,10 @@ impl View {
             News::Gone(why) => {
                 if self.state.get("gone").is_none_or(Value::is_null) {
                     self.say(&format!("the line is gone: {why}; it is opened again when it is back"));
+                }
+                if let Some(test) = &mut self.selftest {
+                    test.fail(&format!("the line is gone: {why}"));
+                    self.tell_selftest();
                 }
                 self.tell(json!({ "gone": why }));
             }
@@ -113,13 +104,10 @@ impl View {
                 }
             }
             News::Scene(truth::Told::Truth(truth)) => self.tell(json!({ "truth": truth })),
-            News::Scene(truth::Told::Bench(bench)) => {
-                self.tell(json!({ "bench": bench.map(|bench| bench.keys) }));
-            }
+            News::Scene(truth::Told::Bench(keys)) => self.tell(json!({ "bench": keys })),
             News::Played(play::Told::Message(heard)) => self.hear(&heard),
             News::Played(play::Told::At(playing)) => self.tell(json!({ "playing": playing })),
             News::Played(play::Told::Again) => self.begin_anew(),
-            News::Played(play::Told::Over) => {}
             News::Answered(command, Ok(answer)) => {
                 self.say(&format!("> {}", answer_words(&command, &answer)));
             }
@@ -135,8 +123,14 @@ impl View {
             self.say(&format!("{missed} messages missed"));
         }
         let message = &received.message;
+        if let Some(test) = &mut self.selftest {
+            let had_failed = test.failed.is_some();
+            test.take(message);
+            if matches!(message, Up::Senses(_)) || test.failed.is_some() != had_failed {
+                self.tell_selftest();
+            }
+        }
         match message {
-            Up::Raw(_) | Up::Taken { .. } => {}
             Up::Slow(slow) => self.slow(slow),
             Up::Senses(senses) => {
                 let all = CHANNELS.iter().zip(&senses.samples);
@@ -151,25 +145,23 @@ impl View {
             }
             Up::Answer { answer: Answer::Setting(setting), .. } => self.set(&[*setting]),
             Up::Answer { answer: Answer::Settings(all), .. } => self.set(all),
-            Up::Answer { answer: Answer::Last(last), .. } if last.after.is_some() && last.from == 0 => {
-                self.say(&words(message));
-            }
-            Up::Answer { .. } => {}
-            Up::Hello { .. } => {
-                self.begin_anew();
-                self.say(&words(message));
-            }
-            Up::Event(event) => {
-                match event.kind {
-                    EventKind::Fault(fault) => self.fault(&fault),
-                    EventKind::Stroke { s2_permille, .. } => {
-                        self.set(&[Setting { id: SettingId::S2.number(), value: s2_permille.into() }]);
-                    }
-                    _ => {}
+            Up::Hello { .. } => self.begin_anew(),
+            Up::Event(event) => match event.kind {
+                EventKind::Fault(fault) => self.fault(&fault),
+                EventKind::Stroke { s2_permille, .. } => {
+                    self.set(&[Setting { id: SettingId::S2.number(), value: s2_permille.into() }]);
                 }
-                self.say(&words(message));
-            }
-            Up::Saved { .. } | Up::Restored(_) => self.say(&words(message)),
+                _ => {}
+            },
+            _ => {}
+        }
+        let is_logged = match message {
+            Up::Answer { answer: Answer::Last(last), .. } => last.after.is_some() && last.from == 0,
+            Up::Hello { .. } | Up::Event(_) | Up::Saved { .. } | Up::Restored(_) => true,
+            _ => false,
+        };
+        if is_logged {
+            self.say(&words(message));
         }
     }
 
@@ -185,9 +177,9 @@ impl View {
         let point = json!([
             seconds(slow.frame),
             mv_from_sample(vibration),
-            slow.forces.and_then(|forces| forces.ratio_permille).map(thousandths),
-            thousandths(slow.s2_permille),
-            slow.forces.map(|forces| thousandths(forces.load_mn)),
+            slow.forces.and_then(|forces| forces.ratio_permille).map(|permille| f64::from(permille) / 1e3),
+            f64::from(slow.s2_permille) / 1e3,
+            slow.forces.map(|forces| f64::from(forces.load_mn) / 1e3),
             slow.flexor_mv,
             slow.extensor_mv,
         ]);
@@ -197,13 +189,7 @@ impl View {
             let ever =
                 |set: fn(&TickRecord) -> DetectorSet| slow.ticks.iter().any(|tick| set(tick).contains(id));
             let evidence = slow.evidence.iter().find(|(own, _)| *own == id).map(|(_, evidence)| evidence);
-            json!([
-                id.name(),
-                ever(|tick| tick.said),
-                ever(|tick| tick.believed),
-                ever(|tick| tick.acted),
-                evidence
-            ])
+            (id.name(), ever(|tick| tick.said), ever(|tick| tick.believed), ever(|tick| tick.acted), evidence)
         });
         self.tell(json!({
             "t_s": seconds(slow.frame),
@@ -227,22 +213,21 @@ impl View {
     }
 
     fn fault(&mut self, fault: &Fault) {
-        let name = |channel: u8| CHANNELS.get(usize::from(channel)).map_or("channel", |channel| channel.name);
-        match *fault {
-            Fault::SensorLost { channel, reason } => {
-                self.faults.insert(name(channel).to_owned(), format!("{}: {reason:?}", name(channel)));
-            }
-            Fault::SensorBack { channel } => _ = self.faults.remove(name(channel)),
-            Fault::CapabilityLost(capability) => {
-                self.faults.insert(format!("{capability:?}"), format!("no {capability:?}"));
-            }
-            Fault::CapabilityBack(capability) => _ = self.faults.remove(&format!("{capability:?}")),
-            _ => {}
+        let (of, is_lost) = match *fault {
+            Fault::SensorLost { channel, .. } => (format!("channel {channel}"), true),
+            Fault::SensorBack { channel } => (format!("channel {channel}"), false),
+            Fault::CapabilityLost(own) => (format!("{own:?}"), true),
+            Fault::CapabilityBack(own) => (format!("{own:?}"), false),
+            _ => return,
+        };
+        if is_lost {
+            self.faults.insert(of, in_words(fault));
+        } else {
+            self.faults.remove(&of);
         }
         self.tell(json!({ "faults": self.faults.values().collect::<Vec<_>>() }));
     }
 
-    /// The settings as a file, once the board has sent its identity.
     pub fn backup(&self) -> Option<String> {
         let settings: Vec<Setting> =
             self.settings.iter().map(|(&id, &value)| Setting { id, value }).collect();
@@ -271,9 +256,7 @@ impl View {
                 }
                 let flag = |id| self.setting(id).context("the board has not said its settings yet");
                 let (head, no_wearer) = (flag(SettingId::Head)? != 0, flag(SettingId::NoWearer)? != 0);
-                self.selftest = Some(Selftest::begin_named(channels, head, no_wearer, TOUCH_S)?);
-                self.selftests += 1;
-                self.lines = 0;
+                self.selftest = Some(Selftest::named(channels, head, no_wearer, TOUCH_S)?);
             }
             Some((first, [])) if first == "skip" => {
                 self.selftest.as_mut().context("no test goes on")?.skip();
@@ -285,48 +268,25 @@ impl View {
         Ok(())
     }
 
-    /// Lets the self-test take what came.
-    fn test(&mut self, news: &News) {
-        let Some(test) = &mut self.selftest else { return };
-        let message = match news {
-            News::Frame(Ok(heard), _) => Some(&heard.received.message),
-            News::Played(play::Told::Message(heard)) => Some(&heard.received.message),
-            _ => None,
-        };
-        let had_failed = test.failed.is_some();
-        match news {
-            News::Gone(why) => test.fail(&format!("the line is gone: {why}")),
-            _ => test.take(message),
-        }
-        if matches!(message, Some(Up::Senses(_))) || test.failed.is_some() != had_failed {
-            self.tell_selftest();
-        }
-    }
-
+    /// Tells the pages what the self-test asks, reads and has found.
     fn tell_selftest(&mut self) {
-        self.tell(json!({ "selftest": self.selftest_state(self.lines) }));
-        self.lines = self.selftest.as_ref().map_or(0, |test| test.said.len());
-    }
-
-    /// The state of the self-test: the lines after those that are known, and the verdicts if there are such lines.
-    fn selftest_state(&self, known: usize) -> Value {
-        let Some(test) = &self.selftest else { return Value::Null };
-        let lines = &test.said[known..];
-        let result = |&channel: &usize| {
-            let verdict = test.verdicts[channel];
-            let passes = verdict.map(|verdict| matches!(verdict, Verdict::Pass(_)));
-            let words = verdict.map(|verdict| test.words(channel, verdict));
-            (CHANNELS[channel].name, input(channel), passes, words)
-        };
-        json!({
-            "number": self.selftests,
-            "prompt": test.prompt(),
-            "over": test.is_over(),
-            "passes": test.passes(),
-            "failed": test.failed,
-            "level": test.level(),
-            "lines": lines,
-            "results": (!lines.is_empty()).then(|| test.channels.iter().map(result).collect::<Vec<_>>()),
-        })
+        let state = self.selftest.as_ref().map(|test| {
+            let result = |&channel: &usize| {
+                let verdict = test.verdicts[channel];
+                let passes = verdict.map(|verdict| matches!(verdict, Verdict::Pass(_)));
+                let words = verdict.map(|verdict| verdict.words(channel));
+                (CHANNELS[channel].name, input(channel), passes, words)
+            };
+            json!({
+                "prompt": test.prompt(),
+                "over": test.is_over(),
+                "passes": test.passes(),
+                "failed": test.failed,
+                "level": test.level(),
+                "lines": test.said,
+                "results": test.channels.iter().map(result).collect::<Vec<_>>(),
+            })
+        });
+        self.tell(json!({ "selftest": state }));
     }
 }

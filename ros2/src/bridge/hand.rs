@@ -14,15 +14,10 @@ use zenoh::Session;
 use super::network::{Graph, Publisher, now_ns};
 
 const ANSWER_WITHIN: Duration = Duration::from_millis(500);
-/// Pause before a line is opened again.
 const AGAIN_AFTER: Duration = Duration::from_millis(500);
-/// Readings are asked for this often, for twice as long.
-const STREAM_EVERY: Duration = Duration::from_secs(2);
-/// Diagnostics are published once a second.
 const DIAGNOSE_EVERY: Duration = Duration::from_secs(1);
 const SESSIONS_MAX: u32 = 3;
 
-/// A hand: its name and where its line is.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Hand {
     pub name: String,
@@ -32,7 +27,6 @@ pub struct Hand {
 /// The newest command of the network, until the line's thread takes it.
 type Desk = Arc<Mutex<Option<GripperCommand>>>;
 
-/// Everything a hand publishes.
 struct Topics<'a> {
     joints: Publisher<'a>,
     slip: Publisher<'a>,
@@ -87,7 +81,6 @@ pub fn bridge(session: &Session, domain: u32, id: u32, hand: &Hand, stop: &Atomi
     Ok(())
 }
 
-/// One line while it is open.
 struct Attendant<'a, 'b> {
     client: Client,
     name: &'a str,
@@ -102,19 +95,14 @@ struct Attendant<'a, 'b> {
 }
 
 impl Attendant<'_, '_> {
-    /// Until the line ends: why it did. Fails if nothing can be published any more.
+    /// Serves the line until it ends; the reason. Fails if nothing can be published any more.
     fn attend(&mut self, stop: &AtomicBool) -> anyhow::Result<String> {
         if self.client.can_send() {
-            // It only reads.
             let _asked = self.client.send(&Down::About);
         }
-        let (mut streamed, mut diagnosed) = (None::<Instant>, Instant::now());
+        let mut diagnosed = Instant::now();
         while !stop.load(Ordering::Relaxed) {
-            if self.client.can_send() && streamed.is_none_or(|at| at.elapsed() >= STREAM_EVERY) {
-                let hold_s = 2 * STREAM_EVERY.as_secs() as u16;
-                let _asked = self.client.send(&Down::Stream { raw: false, senses: true, hold_s });
-                streamed = Some(Instant::now());
-            }
+            let _asked = self.client.keep_streaming(false);
             match self.client.next_message() {
                 Ok(Some(heard)) => self.hear(heard.received.message)?,
                 Ok(None) => {}

@@ -11,7 +11,6 @@ use zenoh::pubsub::Subscriber;
 use zenoh::qos::CongestionControl;
 use zenoh::{Config, Session, Wait};
 
-/// Messages that a subscription keeps.
 const DEPTH: u32 = 10;
 const ROUTER_WITHIN: Duration = Duration::from_secs(3);
 const LOOK_EVERY: Duration = Duration::from_millis(20);
@@ -68,13 +67,11 @@ pub fn open(place: &Place) -> anyhow::Result<Session> {
     Ok(session)
 }
 
-/// Nanoseconds since 1970.
 pub fn now_ns() -> u64 {
     let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
     u64::try_from(since.as_nanos()).unwrap_or(u64::MAX)
 }
 
-/// A node of a session, and the tokens that it lives.
 pub struct Graph<'a> {
     session: &'a Session,
     node: Node,
@@ -131,7 +128,6 @@ impl<'a> Graph<'a> {
     }
 }
 
-/// A topic that is published on.
 pub struct Publisher<'a> {
     publisher: zenoh::pubsub::Publisher<'a>,
     gid: [u8; GID],
@@ -139,7 +135,6 @@ pub struct Publisher<'a> {
 }
 
 impl Publisher<'_> {
-    /// Publishes a message. Fails if the session is closed.
     pub fn publish(&mut self, message: &impl Message) -> anyhow::Result<()> {
         let payload = cdr::payload(message).context("no CDR")?;
         self.sequence += 1;

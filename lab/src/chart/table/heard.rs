@@ -3,13 +3,13 @@
 use anyhow::Context;
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 use tenax_hal_shim::channel::{ARRAY_COUNT, FRAMES_PER_SLOW_FRAME, frames};
-use tenax_hal_shim::detector::{DetectorId, DetectorSet};
+use tenax_hal_shim::detector::DetectorSet;
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::Down;
 use tenax_logic::array::{Features, Preprocessor, Reading};
 use tenax_logic::config::Config;
-use tenax_logic::detectors::{Detector, Detectors, Sensed};
+use tenax_logic::detectors::{Detectors, Sensed};
 use tenax_logic::hebbian::HebbianDetector;
 use tenax_logic::journal::Journal;
 use tenax_logic::samples::LastSamples;
@@ -20,11 +20,8 @@ use tenax_scene::{SceneFile, Seeds, World};
 use crate::dataset::operator::Operator;
 use crate::dataset::session::{self, Session, Sizes};
 use crate::dataset::story::Story;
-use crate::learn::bench::Bench;
-use crate::learn::control::Control;
 use crate::learn::finger::Finger;
-use crate::learn::trial::Setup;
-use crate::learn::{LESSONS, holding};
+use crate::learn::{self, holding};
 use tenax_sim::report::fate;
 use tenax_sim::scorer::{SlipSpan, Verdict};
 
@@ -37,17 +34,16 @@ const ZEROED_AT: u32 = frames(100);
 pub struct Felt<'a> {
     pub frame: &'a Frame,
     pub sensed: &'a Sensed<'a>,
-    /// The detectors of the image that say slip or warn of it, and are believed.
+    /// The detectors of the image that report slip or warn of it, and are believed.
     pub believed: DetectorSet,
-    pub controls: [bool; Control::ALL.len()],
     /// The array's features, in the frames that bring new ones.
     pub features: Option<&'a Features>,
+    /// Whether the object slid in most frames since the last features.
+    pub slides: bool,
 }
 
-pub trait Judge {
-    /// Takes a frame: whether it says slip now.
-    fn hear(&mut self, felt: &Felt<'_>) -> bool;
-}
+/// Takes a frame: whether it says slip now.
+pub type Judge = Box<dyn FnMut(&Felt<'_>) -> bool>;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
@@ -65,6 +61,7 @@ pub struct Heard {
     /// The scored span, s.
     pub span_s: (f64, f64),
     pub slips: Vec<SlipSpan>,
+    /// Of each judge.
     pub said: Vec<Vec<Verdict>>,
 }
 
@@ -79,12 +76,13 @@ pub struct Plan {
     pub minutes: u64,
 }
 
-/// A fingertip: its films, gauges and array, what it holds, and what a camera has taught its network.
+/// A fingertip: its films, gauges and array, what it holds, and its network.
 pub struct Fingertip {
     number: u64,
     finger: Finger,
     session: Session,
-    taught: Vec<Vec<u8>>,
+    /// Snapshot of the taught network.
+    taught: Option<Vec<u8>>,
 }
 
 impl Plan {
@@ -96,45 +94,34 @@ impl Plan {
         let number = self.seed.wrapping_mul(1_000).wrapping_add(n as u64);
         let finger = Finger::random(number);
         [session.mu_s, session.mu_d] = finger.friction();
-        let mut bench = Bench::default();
-        for lesson in 0..LESSONS * u64::from(taught) {
-            bench.trial(Setup::new(&finger, number.wrapping_mul(100) + lesson, true)?);
-        }
-        let mut kept = Vec::new();
-        if taught {
-            kept.push(bench.snapshot()?);
-            for control in Control::ALL {
-                kept.push(bench.controlled(control)?.snapshot()?);
-            }
-        }
-        Ok(Fingertip { number, finger, session, taught: kept })
+        let taught = taught.then(|| learn::taught(&finger, number)?.snapshot()).transpose()?;
+        Ok(Fingertip { number, finger, session, taught })
     }
 
     pub const fn count(&self) -> usize {
         4 * self.fingers
-    }
-
-    pub fn recordings(&self) -> u64 {
-        self.pours + self.picks + 2 * self.minutes
     }
 }
 
 impl Fingertip {
     /// The taught network. Fails if it was not taught.
     pub fn network(&self) -> anyhow::Result<HebbianDetector> {
-        network(self.taught.first().context("nothing was taught")?)
+        let mut network = HebbianDetector::default();
+        let taught = self.taught.as_ref().context("nothing was taught")?;
+        network.restore(taught).then_some(network).context("a snapshot that is damaged")
     }
 
-    /// Its recordings, one after the other; `rows` gives fresh judges for each. `steps` hears of each step of the array: its features,
-    /// and whether the object slides. Fails if a scene cannot be made.
+    /// Its recordings, one after the other; `judges` gives fresh ones for each. Fails if a scene cannot be made.
     pub fn record(
         &self,
         plan: &Plan,
-        rows: &dyn Fn() -> Vec<Box<dyn Judge>>,
-        steps: &mut dyn FnMut(&Features, bool),
-        done: &mut dyn FnMut(),
+        judges: &dyn Fn() -> Vec<Judge>,
+        done: &mut dyn FnMut(f64),
     ) -> anyhow::Result<Vec<Heard>> {
         let mut all = Vec::new();
+        let count = (plan.pours + plan.picks + 2 * plan.minutes) as f64;
+        let empty =
+            |kind, span_s| Heard { finger: self.number, kind, span_s, slips: Vec::new(), said: Vec::new() };
         let stories = [(Story::Pour, plan.pours), (Story::Pick, plan.picks)];
         for (story, n) in stories.into_iter().flat_map(|(story, count)| (0..count).map(move |n| (story, n))) {
             let seed = self.number.wrapping_mul(1_000) + 100 * story as u64 + n;
@@ -142,20 +129,21 @@ impl Fingertip {
             let mut rng = ChaCha8Rng::seed_from_u64(seed);
             let scene = story.scene_in(&session, &mut rng, |scene| self.finger.put_on(scene))?;
             let mut operator = Operator::new(story, &session, ChaCha8Rng::seed_from_u64(rng.random()));
-            let mut drive = |world: &World, slips: bool, _: Vec<Down>| operator.drive(world, slips);
+            let mut drive = |world: &World, _: &[Down]| operator.drive(world, world.slipping());
             let end_s = if story == Story::Pick { LETS_GO_S } else { scene.duration_s() };
-            all.push(self.hear(&scene, seed, Kind::Slips, (0.0, end_s), &mut drive, rows(), steps)?);
-            done();
+            let heard = empty(Kind::Slips, (0.0, end_s));
+            all.push(self.hear(&scene, seed, heard, &mut drive, judges())?);
+            done(all.len() as f64 / count);
         }
         let kinds = [Kind::Quiet, Kind::Disturbed];
         for (n, kind) in (0..plan.minutes).flat_map(|n| kinds.map(|kind| (n, kind))) {
             let seed = self.number.wrapping_mul(1_000) + 900 + n;
             let scene = holding::minute(&self.with_array(), seed, kind == Kind::Disturbed)?;
             let mut line = Line::default();
-            let mut drive = |_: &World, _: bool, commands: Vec<Down>| line.drive(&commands);
-            let span_s = (holding::FROM_S, scene.duration_s());
-            all.push(self.hear(&scene, seed, kind, span_s, &mut drive, rows(), steps)?);
-            done();
+            let mut drive = |_: &World, commands: &[Down]| line.drive(commands);
+            let heard = empty(kind, (holding::FROM_S, scene.duration_s()));
+            all.push(self.hear(&scene, seed, heard, &mut drive, judges())?);
+            done(all.len() as f64 / count);
         }
         Ok(all)
     }
@@ -178,53 +166,48 @@ impl Fingertip {
         array.into_iter().fold(self.finger.clone(), Finger::with)
     }
 
-    #[expect(clippy::too_many_arguments, reason = "one recording: its world, its hand, its listeners")]
+    /// Plays a scene into `heard`. Fails if its network cannot be restored.
     fn hear(
         &self,
         scene: &SceneFile,
         seed: u64,
-        kind: Kind,
-        span_s: (f64, f64),
-        hand: &mut dyn FnMut(&World, bool, Vec<Down>) -> MotorDrive,
-        mut judges: Vec<Box<dyn Judge>>,
-        steps: &mut dyn FnMut(&Features, bool),
+        mut heard: Heard,
+        hand: &mut dyn FnMut(&World, &[Down]) -> MotorDrive,
+        mut judges: Vec<Judge>,
     ) -> anyhow::Result<Heard> {
         let mut world = World::seeded(scene, Seeds { making: self.finger.making, noise: seed });
-        let mut ears = Ears::new(&self.taught)?;
-        let mut said: Vec<Vec<Verdict>> = vec![Vec::new(); judges.len()];
+        let mut ears = Ears::default();
+        if self.taught.is_some() {
+            ears.detectors.hebbian = self.network()?;
+        }
+        heard.said.resize(judges.len(), Vec::new());
         let (mut drive, mut slid) = (MotorDrive::Coast, 0);
         for sequence in 0.. {
-            if world.now_s() >= span_s.1 || world.truth().dropped {
+            if world.now_s() >= heard.span_s.1 || world.truth().dropped {
                 break;
             }
             let (frame, commands) = world.frame(sequence, drive);
             slid += u32::from(world.slipping());
             let t_s = world.now_s();
-            ears.take(&frame, drive, &mut |felt| {
-                for (judge, said) in judges.iter_mut().zip(&mut said) {
-                    Verdict::go_on(said, t_s, judge.hear(felt));
+            let slides = 2 * slid > u32::from(FRAMES_PER_SLOW_FRAME);
+            ears.take(&frame, drive, slides, &mut |felt| {
+                for (judge, said) in judges.iter_mut().zip(&mut heard.said) {
+                    Verdict::go_on(said, t_s, judge(felt));
                 }
-                if let Some(features) = felt.features {
-                    steps(features, 2 * slid > u32::from(FRAMES_PER_SLOW_FRAME));
+                if felt.features.is_some() {
                     slid = 0;
                 }
             });
-            drive = hand(&world, world.slipping(), commands);
+            drive = hand(&world, &commands);
             // An operator looks at the trace; of a minute without one it would only fill the memory.
-            if kind != Kind::Slips {
+            if heard.kind != Kind::Slips {
                 drop(world.take_trace());
             }
         }
-        let span_s = (span_s.0, world.now_s());
-        Ok(Heard { finger: self.number, kind, span_s, slips: fate::spans(world.truth()), said })
+        heard.span_s.1 = world.now_s();
+        heard.slips = fate::spans(world.truth());
+        Ok(heard)
     }
-}
-
-/// A network from its snapshot. Fails if that is damaged.
-fn network(snapshot: &[u8]) -> anyhow::Result<HebbianDetector> {
-    let mut network = HebbianDetector::default();
-    network.restore(snapshot).then_some(()).context("a snapshot that is damaged")?;
-    Ok(network)
 }
 
 /// Drives as the scene's commands on the line ask.
@@ -247,33 +230,20 @@ impl Line {
 }
 
 /// The image's senses and detectors, without its reflex: it would change what the others hear.
-pub struct Ears {
+#[derive(Default)]
+struct Ears {
     config: Config,
     senses: Senses,
     samples: LastSamples,
     detectors: Detectors,
-    controls: Vec<(HebbianDetector, bool)>,
     journal: Journal,
     taxels: Reading,
     features: Preprocessor,
 }
 
 impl Ears {
-    pub fn new(taught: &[Vec<u8>]) -> anyhow::Result<Self> {
-        let mut detectors = Detectors::default();
-        let mut controls = Vec::new();
-        if let [learned, changed @ ..] = taught {
-            detectors.hebbian = network(learned)?;
-            for own in changed {
-                controls.push((network(own)?, false));
-            }
-        }
-        let (config, senses, samples, journal, taxels, features) = Default::default();
-        Ok(Self { config, senses, samples, detectors, controls, journal, taxels, features })
-    }
-
-    pub fn take(&mut self, frame: &Frame, drive: MotorDrive, hear: &mut dyn FnMut(&Felt<'_>)) {
-        let Self { config, senses, samples, detectors, controls, journal, taxels, features } = self;
+    fn take(&mut self, frame: &Frame, drive: MotorDrive, slides: bool, hear: &mut dyn FnMut(&Felt<'_>)) {
+        let Self { config, senses, samples, detectors, journal, taxels, features } = self;
         if frame.sequence == ZEROED_AT {
             // Refused while something is held, and then it follows by itself.
             let _is_zeroed = senses.zero();
@@ -287,22 +257,13 @@ impl Ears {
         };
         let sensed = senses.sensed(config, frame, duty, false);
         detectors.step(config, &sensed);
-        for (network, says) in &mut *controls {
-            if let Some(said) = network.step(&config.hebbian, &sensed) {
-                *says = said.slip || said.incipient;
-            }
-        }
         let slot = usize::from(frame.slot());
         if let Some(taxel) = taxels.get_mut(slot) {
             *taxel = Some(frame.switch_b);
         }
         let new = if slot == ARRAY_COUNT { features.push(taxels) } else { None };
-        let credible = detectors.credible();
-        let believed = detectors.slip().or(detectors.incipient()).and(credible);
-        let believes = credible.contains(DetectorId::Hebbian);
-        let says = |n: usize| believes && controls.get(n).is_some_and(|(_, says)| *says);
-        let controls = std::array::from_fn(says);
-        hear(&Felt { frame, sensed: &sensed, believed, controls, features: new });
+        let believed = detectors.slip().or(detectors.incipient()).and(detectors.credible());
+        hear(&Felt { frame, sensed: &sensed, believed, features: new, slides });
         senses.driven(drive, false, false, 1);
         if frame.ends_slow_frame() {
             senses.think(config, samples, journal);

@@ -10,7 +10,6 @@ use tenax_hal_shim::wire::{BadFrame, VERSION};
 use super::Inbox;
 use crate::protobuf;
 
-/// The topic of a recording that holds the line's bytes.
 pub const TOPIC: &str = "/line";
 
 /// The line's bytes in a recording or a captured line. Of a recording that was cut short, its whole chunks.
@@ -27,15 +26,13 @@ pub fn line_of(path: &Path) -> anyhow::Result<Vec<u8>> {
             Err(_) => {}
         }
     }
-    if let Some(version) = other {
-        bail!(
-            "{name} is of wire version {version}, and this tool reads {VERSION}: use the tool that recorded it"
-        );
+    match other {
+        Some(version) => bail!("{name} is of wire version {version}, and this tool reads {VERSION}"),
+        None => bail!(
+            "{name} is no board's line: none of its {} bytes belongs to a message. `tenax record` writes one",
+            line.len()
+        ),
     }
-    bail!(
-        "{name} is no board's line: none of its {} bytes belongs to a message. `tenax record` writes one",
-        line.len()
-    )
 }
 
 fn recorded(path: &Path, bytes: &[u8]) -> anyhow::Result<Vec<u8>> {
@@ -51,7 +48,6 @@ fn recorded(path: &Path, bytes: &[u8]) -> anyhow::Result<Vec<u8>> {
     Ok(line)
 }
 
-/// Whether a file's name is that of a recording.
 pub fn is_recording(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("mcap"))
 }

@@ -145,11 +145,10 @@ impl Client {
     fn ask_once(&mut self, command: &Down, within: Duration) -> anyhow::Result<Answer> {
         // A board that is slower than real time skips more commands. Twice the same read or `Set` does no more than one.
         let repeats = command.reads() || matches!(command, Down::Set(_));
-        let waits = if repeats { &[within / 2, within][..] } else { &[within] };
-        for wait in waits {
+        for wait in repeats.then_some(within / 2).into_iter().chain([within]) {
             self.asked = Some(self.send(command)?);
             let began = Instant::now();
-            while began.elapsed() < *wait {
+            while began.elapsed() < wait {
                 self.read().context("the line ended before the answer came")?;
                 if let Some(answer) = self.answer.take() {
                     return Ok(answer);

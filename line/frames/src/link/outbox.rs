@@ -6,16 +6,10 @@ use serde::Serialize;
 use tenax_hal_shim::wire::{Down, FRAME_MAX, encode};
 
 /// One end of a line, which numbers what it sends from 0 on.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Encoder {
     next: u16,
-    buffer: [u8; FRAME_MAX],
-}
-
-impl Default for Encoder {
-    fn default() -> Self {
-        Self { next: 0, buffer: [0; FRAME_MAX] }
-    }
+    frame: Vec<u8>,
 }
 
 impl Encoder {
@@ -24,11 +18,11 @@ impl Encoder {
     pub fn frame(&mut self, message: &impl Serialize) -> (u16, &[u8]) {
         let number = self.next;
         self.next = number.wrapping_add(1);
-        (number, encode(number, message, &mut self.buffer).map_or(&[], |frame| frame))
+        self.frame.resize(FRAME_MAX, 0);
+        (number, encode(number, message, &mut self.frame).map_or(&[], |frame| frame))
     }
 }
 
-/// Sends commands as frames.
 #[derive(Debug)]
 pub struct Outbox<W> {
     line: W,

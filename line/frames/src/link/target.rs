@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::time::Duration;
 
-use anyhow::{Context, anyhow, bail};
+use anyhow::{Context, bail};
 use tenax_hal_shim::wire::BAUD;
 
 use super::captured::line_of;
@@ -21,7 +21,6 @@ pub enum Target {
     Port(String),
     /// HOST:PORT, written `tcp:HOST:PORT`.
     Tcp(String),
-    /// A recording or a captured line.
     File(PathBuf),
 }
 
@@ -60,7 +59,6 @@ impl Display for Target {
 }
 
 impl Target {
-    /// Opens the line. An error says what is wrong, and what to do about it.
     pub fn open(&self) -> anyhow::Result<Line> {
         match self {
             Self::Port(name) => open_port(name),
@@ -87,20 +85,23 @@ fn open_port(name: &str) -> anyhow::Result<Line> {
         );
     }
     let baud = if pseudo && cfg!(target_os = "macos") { 0 } else { BAUD };
-    let open = || {
-        let up = serialport::new(name, baud).timeout(READ_TIMEOUT).exclusive(!pseudo).open()?;
-        let down = up.try_clone()?;
-        Ok(Line { up: Box::new(up), down: Some(Box::new(down)) })
-    };
-    open().map_err(|error: serialport::Error| {
-        let ports = serialport::available_ports().unwrap_or_default();
-        let names: Vec<String> = ports.into_iter().map(|port| port.port_name).collect();
-        let seen = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
-        anyhow!(
-            "cannot open {name}: {error}; ports on this machine: {seen}. A scene's line is where `tenax run --serve` \
-             says, or tcp:HOST:PORT"
+    let port = serialport::new(name, baud).timeout(READ_TIMEOUT).exclusive(!pseudo);
+    let both = port.open().and_then(|up| Ok((up.try_clone()?, up)));
+    let (down, up) = both.with_context(|| {
+        format!(
+            "cannot open {name}; ports on this machine: {}. A scene's line is where `tenax run --serve` says, or \
+             tcp:HOST:PORT",
+            port_names()
         )
-    })
+    })?;
+    Ok(Line { up: Box::new(up), down: Some(Box::new(down)) })
+}
+
+/// Serial ports of this machine, for an error's words.
+pub fn port_names() -> String {
+    let ports = serialport::available_ports().unwrap_or_default();
+    let names: Vec<String> = ports.into_iter().map(|port| port.port_name).collect();
+    if names.is_empty() { "none".to_owned() } else { names.join(", ") }
 }
 
 /// Another process that has a port open. None as well where the system, or another user's process, does not tell.
@@ -116,7 +117,6 @@ fn holder(port: &str) -> Option<String> {
     })
 }
 
-/// Whether a path leads to a pseudo-terminal.
 fn is_pseudo(name: &str) -> bool {
     let path = std::fs::canonicalize(name).unwrap_or_default();
     path.starts_with("/dev/pts")

@@ -41,7 +41,6 @@ pub fn export(line: &[u8], folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
     Ok(paths)
 }
 
-/// Names and texts of a value's columns: a list has one for each number.
 fn cells(name: &str, value: &Value) -> Vec<(String, String)> {
     let text = match value {
         Value::Numbers(numbers) => {

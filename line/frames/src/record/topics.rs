@@ -13,11 +13,9 @@ use crate::protobuf::Fields;
 use crate::protobuf::Value::{self, Flag, Number, Numbers, Text};
 use crate::words::{names, seconds, words};
 
-/// A message of a topic.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
     pub topic: Cow<'static, str>,
-    /// The name of its type.
     pub message: &'static str,
     /// The frame whose end is its time.
     pub frame: u32,

@@ -1,13 +1,14 @@
-//! Clients of a line: each gets the frames that come up, and theirs go down. It never waits: what a client has no room for is dropped and
-//! counted.
+//! Clients of a line: each gets the frames that come up, and theirs go down. What a client has no room for is dropped and counted.
 
-use std::io::{Read, Write};
+use std::io::{self, Read, Write};
+use std::net::{Ipv4Addr, Shutdown, TcpListener, TcpStream};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::thread;
-use std::time::Duration;
+use std::thread::{self, JoinHandle};
+use std::time::{Duration, Instant};
 
+use anyhow::Context;
 use tenax_hal_shim::wire::FRAME_MAX;
 
 use super::Tally;
@@ -17,12 +18,13 @@ pub type Frame = Arc<[u8]>;
 
 /// Frames on their way to a client: 2.5 s of a line at rest.
 const CLIENT_FRAMES: usize = 256;
+const LOOK_EVERY: Duration = Duration::from_millis(10);
+const TIMEOUT: Duration = Duration::from_millis(100);
 
 pub struct Hub {
     clients: Mutex<Clients>,
     writers: AtomicUsize,
     closed: AtomicBool,
-    /// The first frame for each client.
     greeting: Option<Frame>,
     /// Frames that go down, and the byte that ends one.
     down: SyncSender<Vec<u8>>,
@@ -31,7 +33,6 @@ pub struct Hub {
 
 #[derive(Default)]
 struct Clients {
-    /// None: no more frames come.
     senders: Option<Vec<SyncSender<Frame>>>,
     tally: Tally,
 }
@@ -39,7 +40,7 @@ struct Clients {
 impl Hub {
     pub fn new(down: SyncSender<Vec<u8>>, end: u8, greeting: Option<Frame>) -> Arc<Self> {
         let clients = Mutex::new(Clients { senders: Some(Vec::new()), ..Clients::default() });
-        let (writers, closed) = (AtomicUsize::new(0), AtomicBool::new(false));
+        let (writers, closed) = (AtomicUsize::default(), AtomicBool::default());
         Arc::new(Self { clients, writers, closed, greeting, down, end })
     }
 
@@ -66,22 +67,18 @@ impl Hub {
         });
     }
 
-    /// The line is over; clients get what is on its way.
-    pub fn no_more(&self) {
+    /// The line is over. Ends when every client has read what is on its way, or the time is over.
+    pub fn close(&self, within: Duration) {
         self.clients().senders = None;
-    }
-
-    pub fn close(&self) {
+        let began = Instant::now();
+        while self.writers.load(Relaxed) > 0 && began.elapsed() < within {
+            thread::sleep(Duration::from_millis(5));
+        }
         self.closed.store(true, Relaxed);
     }
 
     pub fn is_closed(&self) -> bool {
         self.closed.load(Relaxed)
-    }
-
-    /// Clients that are being written to.
-    pub fn writers(&self) -> usize {
-        self.writers.load(Relaxed)
     }
 
     pub fn tally(&self) -> Tally {
@@ -110,15 +107,13 @@ impl Hub {
         self.writers.fetch_sub(1, Relaxed);
     }
 
-    /// Passes on what a client sends until it leaves or the hub is closed.
     pub fn read(&self, client: &mut dyn Read) {
         let (mut framer, mut buffer) = (Framer::ending(self.end), [0; 4096]);
         while !self.is_closed() {
             match client.read(&mut buffer) {
-                Ok(0) => break,
-                Ok(count) => self.pass_on(&mut framer, &buffer[..count]),
+                Ok(count @ 1..) => self.pass_on(&mut framer, &buffer[..count]),
                 Err(error) if is_silence(&error) => {}
-                Err(_) => break,
+                _ => break,
             }
         }
     }
@@ -136,13 +131,48 @@ impl Hub {
         }
     }
 
+    /// Serves on 127.0.0.1 until the hub is closed; the address for `tenax monitor --port`. No other machine may reach the line: it can
+    /// drive the motor.
+    pub fn serve_tcp(self: &Arc<Self>, port: u16) -> anyhow::Result<(String, JoinHandle<()>)> {
+        let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port)).with_context(|| {
+            format!("cannot serve on TCP port {port}: choose another, or 0 for any that is free")
+        })?;
+        listener.set_nonblocking(true)?;
+        let (place, hub) = (format!("tcp:{}", listener.local_addr()?), Arc::clone(self));
+        let door = thread::spawn(move || {
+            while !hub.is_closed() {
+                match listener.accept() {
+                    Ok((stream, _)) => drop(hub.attend(stream)),
+                    Err(_) => thread::sleep(LOOK_EVERY),
+                }
+            }
+        });
+        Ok((place, door))
+    }
+
+    fn attend(self: &Arc<Self>, mut stream: TcpStream) -> io::Result<()> {
+        stream.set_nonblocking(false)?;
+        stream.set_nodelay(true)?;
+        stream.set_read_timeout(Some(TIMEOUT))?;
+        stream.set_write_timeout(Some(TIMEOUT))?;
+        let (mut up, frames) = (stream.try_clone()?, self.join());
+        let (writer, reader) = (Arc::clone(self), Arc::clone(self));
+        thread::spawn(move || {
+            writer.write(&frames, &mut up, &AtomicBool::default());
+            // The reader's thread has the stream too, so it is not closed by itself.
+            let _closed = up.shutdown(Shutdown::Both);
+        });
+        thread::spawn(move || reader.read(&mut stream));
+        Ok(())
+    }
+
     fn clients(&self) -> MutexGuard<'_, Clients> {
         self.clients.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
 /// Cuts a stream of bytes after each `end`: into frames, or into lines.
-#[derive(Debug, Default)]
+#[derive(Default)]
 pub struct Framer {
     bytes: Vec<u8>,
     end: u8,

@@ -21,7 +21,6 @@ const LOOK_EVERY: Duration = Duration::from_millis(10);
 /// Time for a client to read the last bytes: the rest is lost when the near end closes.
 const LAST_READ: Duration = Duration::from_millis(100);
 
-/// The near end of a pseudo-terminal.
 pub struct Pty {
     near: TTYPort,
     path: String,
@@ -29,7 +28,6 @@ pub struct Pty {
 }
 
 impl Pty {
-    /// A new one, with a symlink `at` this path.
     pub fn new(at: Option<&Path>) -> anyhow::Result<Self> {
         let what = "cannot make a pseudo-terminal; serve on TCP instead, with --serve-tcp PORT";
         let (mut near, far) = TTYPort::pair().context(what)?;
@@ -40,13 +38,11 @@ impl Pty {
         Ok(Self { near, path, link })
     }
 
-    /// As `tenax monitor --port` takes it.
     pub fn places(&self) -> Vec<String> {
         let link = self.link.as_ref().map(|link| link.0.display().to_string());
         [self.path.clone()].into_iter().chain(link).collect()
     }
 
-    /// Serves one client after the other until the hub is closed.
     pub fn serve(mut self, hub: &Arc<Hub>) {
         let mut client: Option<Arc<AtomicBool>> = None;
         let (mut framer, mut buffer) = (Framer::default(), [0; 4096]);
@@ -74,7 +70,6 @@ impl Pty {
         }
     }
 
-    /// Writes to a client from now on, until it is told that the client is gone.
     fn write(&self, hub: &Arc<Hub>) -> Option<Arc<AtomicBool>> {
         let gone = Arc::<AtomicBool>::default();
         let (mut near, frames) = (self.near.try_clone_native().ok()?, hub.join());
@@ -93,7 +88,6 @@ impl Pty {
     }
 }
 
-/// A symlink that goes when the pseudo-terminal does.
 struct Link(PathBuf);
 
 impl Link {

@@ -5,11 +5,9 @@ use std::process::Command;
 
 use anyhow::{Context, Result, ensure};
 
-/// What the image is compiled for: Cortex-M4F, hard float.
 pub const TARGET: &str = "thumbv7em-none-eabihf";
 const PACKAGE: &str = "tenax-firmware";
 const PROFILE: &str = "firmware";
-/// What Cargo sets for the processes that it runs; none of it is meant for the image.
 const NOT_FOR_THE_IMAGE: [&str; 5] = [
     "CARGO_BUILD_TARGET",
     "CARGO_ENCODED_RUSTFLAGS",

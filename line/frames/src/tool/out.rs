@@ -39,7 +39,6 @@ pub fn unless_closed(printed: anyhow::Result<()>) -> anyhow::Result<()> {
     }
 }
 
-/// Prints a line on standard error. Nothing can be done if nobody reads it.
 pub fn print_error(what: Arguments) {
     let _ = writeln!(io::stderr().lock(), "{what}");
 }

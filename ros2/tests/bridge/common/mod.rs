@@ -14,7 +14,6 @@ pub struct Served {
 }
 
 impl Served {
-    /// Serves a scene: its name, or its text.
     pub fn start(scene: &str) -> Self {
         let tool = Path::new(env!("CARGO_MANIFEST_DIR")).join("../target/release/tenax-sim");
         assert!(tool.exists(), "build the tool first: `cargo tenax run --list`");
