@@ -1,8 +1,5 @@
-// Part of several build scripts: says whether the recordings of others are here, so that a test of them is counted as ignored
-// where they are not, and never as passed.
-//
-// A test of a recording has `#[cfg_attr(not(recordings), ignore = "no recordings in ../shared/data")]`, one of a video
-// `#[cfg_attr(not(videos), ignore = "no video in ../shared/data, or no ffmpeg")]`. It asks for its file and fails if that is gone.
+// Part of several build scripts: whether the recordings of others are here, so that a test of them is counted as ignored where they
+// are not: `#[cfg_attr(not(recordings), ignore = "no recordings in ../shared/data")]`, and the same of `videos`.
 
 /// Sets `recordings` and `videos`. They are never part of the project, but lie beside it.
 fn recordings() {

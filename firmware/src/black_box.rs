@@ -25,8 +25,7 @@ const FAULTS: [Fault; 5] = [
     Fault::TooManyRestarts,
 ];
 
-/// Words of the header: the seal; bytes written since the box was empty; the fault after which it stays as it is, or 0; the
-/// length of why it ended.
+/// Words of the header: the seal; bytes written since the box was empty; a fault's number or 0; the length of why the run ended.
 const SEALED: usize = 0;
 const WRITTEN: usize = 1;
 const FAULT: usize = 2;
@@ -107,8 +106,7 @@ pub fn write(message: &Up, frame: &[u8]) {
     let first = frame.len().min(SIZE - at);
     let bytes = addr_of_mut!(BYTES).cast::<u8>();
     // SAFETY: `at + first` and what is left are within the box, as is checked above. While it stands open nobody but this
-    // task gets at the bytes: `read` looks at a closed one only, and opens it only when it has been closed before, when
-    // this has returned above.
+    // task gets at the bytes: `read` looks at a closed one only.
     unsafe {
         copy_nonoverlapping(frame.as_ptr(), bytes.add(at), first);
         copy_nonoverlapping(frame.as_ptr().add(first), bytes, frame.len() - first);

@@ -24,14 +24,12 @@ const OPEN: usize = 1;
 const PINS: [usize; 2] = [8, 9];
 const TIM1_PINS: u8 = 1;
 
-/// Both sides of the bridge. A side that is not driven is low.
 pub struct Bridge {
     /// The duty for which its edges have their place.
     placed: Duty,
 }
 
 impl Bridge {
-    /// Takes the timer and the pins; neither side is driven.
     pub fn new(_timer: Peri<'static, TIM1>, _close: Peri<'static, PA8>, _open: Peri<'static, PA9>) -> Self {
         pac::RCC.apb2enr().modify(|w| w.set_tim1en(true));
         let timer = pac::TIM1;
@@ -75,16 +73,13 @@ impl Bridge {
     }
 }
 
-/// Drives a side for so many ticks of each period.
 fn compare<const SIDE: usize>(ticks: u16) {
     pac::TIM1.ccr(SIDE).write(|w| w.set_ccr(ticks));
 }
 
 impl MotorBridge for Bridge {
-    /// Takes effect when the running PWM period ends, within 50 us; 53 where its edges are moved.
-    ///
-    /// The side to be released is always written first: the timer takes both over together at the end of a period, so
-    /// whichever side of that instant the two writes fall, never are both driven.
+    /// Takes effect when the running PWM period ends, within 50 us; 53 where its edges are moved. The timer takes both sides over together
+    /// then, and the released one is written first: never are both driven.
     fn drive(&mut self, drive: MotorDrive) {
         match drive {
             MotorDrive::Coast => {
@@ -97,17 +92,14 @@ impl MotorBridge for Bridge {
     }
 }
 
-/// Stops driving the motor from anywhere, whatever state the image is in: for a panic or a fault, after which nobody
-/// drives it again before a reset.
-///
-/// The timer's outputs go off at once, without waiting for the period's end; then the pins are taken away from it and
-/// held low.
+/// Stops driving the motor from anywhere, for a panic or a fault: the timer's outputs go off without waiting for the period's end; then
+/// the pins are held low.
 pub fn off() {
     pac::TIM1.bdtr().modify(|w| w.set_moe(false));
     hold_low();
 }
 
-/// Both pins low, from the first instants of a start on: they float after a reset, and the clock may be waited for.
+/// Both pins low, from the first instants of a start on: they float after a reset.
 pub fn hold_low() {
     pac::RCC.ahb1enr().modify(|w| w.set_gpioaen(true));
     for pin in PINS {

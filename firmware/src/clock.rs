@@ -8,7 +8,6 @@ use embassy_stm32::pac::{DBGMCU, FLASH, PWR, RCC};
 
 /// Clock of AHB and all timers, Hz (RM0383, figure 12): a scan period is a whole number of its ticks and of microseconds.
 pub const CORE_HZ: u32 = 100_000_000;
-/// Clock of APB1, Hz.
 pub const APB1_HZ: u32 = CORE_HZ / 2;
 
 /// Lets the flash fetch ahead and cache instructions: at 100 MHz it has three wait states, which the chip otherwise pays
@@ -27,7 +26,6 @@ const LOOK_CYCLES: u32 = 1_600;
 const LOOKS: u32 = 200;
 const LOOKS_SUPPLIED: u32 = 3_000;
 
-/// Waits for the crystal's clock; false if it does not come.
 pub fn has_crystal(was_off: bool) -> bool {
     RCC.cr().modify(|w| {
         w.set_hsebyp(true);
@@ -50,7 +48,6 @@ pub fn watch_crystal() {
 
 /// Starts the clocks, out of a reset: HSE bypassed at 8 MHz, PLL to 100 MHz, AHB at 100 MHz, APB1 at 50, APB2 at 100; and those
 /// of the pins, the DMA controllers and the supply's guard.
-///
 /// HSI only where there is no crystal: its tolerance overruns the serial line at 921 600 baud, but a hand that nobody hears is
 /// better than one that nobody can open.
 pub fn start(crystal: bool) {

@@ -10,24 +10,20 @@ use tenax_logic::fingertip::Fingertip;
 use tenax_logic::stream::SENSES_SLOT;
 
 use crate::black_box;
+use crate::board::{Button, Switches, Vibrator, Watchdog};
 use crate::bridge::Bridge;
-use crate::button::Button;
 use crate::counts;
 use crate::last_words;
 use crate::mail;
 use crate::scan::Scan;
-use crate::switches::Switches;
-use crate::vibrator::Vibrator;
-use crate::watchdog::Watchdog;
 
 pub struct Control {
-    device: Device,
+    pub device: Device,
     bridge: Bridge,
     vibrator: Vibrator,
     switches: Switches,
     button: Button,
     watchdog: Watchdog,
-    /// Slow frames so far, as far as they count.
     slow_frames: u16,
 }
 
@@ -44,20 +40,16 @@ impl Control {
         Self { device: Device::default(), bridge, vibrator, switches, button, watchdog, slow_frames: 0 }
     }
 
-    pub fn restore(&mut self, restore: impl FnOnce(&mut Device)) {
-        restore(&mut self.device);
-    }
-
     /// Everything that a frame causes, the most urgent first.
     fn on_frame(&mut self, frame: &Frame) {
         let next = frame.sequence.wrapping_add(1);
         self.switches.show(select_of_slot((next % u32::from(FRAMES_PER_SLOW_FRAME)) as u8));
 
-        self.device.button(self.button.is_down());
+        self.device.fingertip.button(self.button.is_down());
         if has_room_for_command(frame) {
             self.take_command();
         }
-        let drive = tenax_control_tick(self.device.fingertip_mut(), frame);
+        let drive = tenax_control_tick(&mut self.device.fingertip, frame);
         self.bridge.drive(drive);
         self.watchdog.feed();
         counts::TICKS.add_one();
@@ -84,9 +76,9 @@ impl Control {
     #[inline(never)]
     fn save(&mut self) {
         self.device.slow_frame_passed();
-        self.button.light(self.device.light());
-        self.device.bridge(self.button.bridge_is_off());
-        self.vibrator.drive(self.device.feedback());
+        self.button.light(self.device.fingertip.light());
+        self.device.fingertip.bridge(self.button.bridge_is_off());
+        self.vibrator.drive(self.device.fingertip.feedback());
         self.slow_frames = self.slow_frames.saturating_add(1);
         if self.slow_frames == LIVED_WELL {
             last_words::lived_well();
@@ -143,8 +135,7 @@ fn tenax_control_tick(fingertip: &mut Fingertip, frame: &Frame) -> MotorDrive {
     fingertip.tick(frame)
 }
 
-/// A command taken, before the tick of the frame that came last. Not inlined, so that the emulated board can tell by this
-/// name before which tick that was: a replay gives it to the host's logic there.
+/// A command taken. Not inlined, so that the emulated board can tell by this name before which tick that was.
 #[inline(never)]
 #[unsafe(no_mangle)]
 fn tenax_control_command(device: &mut Device, command: &Received<Down>) -> Result<(), Refusal> {

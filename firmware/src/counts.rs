@@ -1,4 +1,4 @@
-//! Counters of the image. Every task adds to its own; telemetry reads them all.
+//! Counters of the image, as [`Counters`] has them. Every task adds to its own; telemetry reads them all.
 
 use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
@@ -30,17 +30,11 @@ impl Count {
 
 pub static FRAMES: Count = Count::new();
 pub static FRAMES_LOST: Count = Count::new();
-/// Times the converter or its DMA overran or fell silent, and was restarted.
 pub static OVERRUNS: Count = Count::new();
 pub static TICKS: Count = Count::new();
-/// Control ticks that ended after the next frame had begun.
 pub static TICKS_LATE: Count = Count::new();
-/// Messages dropped because the line was behind.
 pub static TELEMETRY_DROPPED: Count = Count::new();
-/// Frames received that were no message, and errors of the line itself.
 pub static BAD_FRAMES: Count = Count::new();
-
-/// Frames received that there was no time for.
 pub static COMMANDS_SKIPPED: Count = Count::new();
 
 /// Execution time of control since boot, us; wraps at 2^32.
@@ -57,7 +51,6 @@ pub fn control_us() -> u32 {
     CONTROL_US.get()
 }
 
-/// All of them, as they go up the line. `control_permille` is control's part of the time since the last ones.
 pub fn counters(control_permille: u16) -> Counters {
     Counters {
         frames: FRAMES.get(),

@@ -1,8 +1,7 @@
 //! The scan's own clock, and the one deadline on it: what waits for the converter waits until then at the longest.
 //!
-//! A deadline in the time driver's queue costs more instructions a frame than adding up the frame does. This one is a
-//! compare register of TIM2, which counts microseconds in 32 bits: a new deadline is one store, and an old one that was
-//! not reached needs no taking back.
+//! It is a compare register of TIM2, which counts microseconds in 32 bits: a new deadline is one store, far less than in the time
+//! driver's queue, and an old one needs no taking back.
 
 use core::future::poll_fn;
 use core::task::Poll;
@@ -21,7 +20,6 @@ pub fn clock_us() -> u32 {
     pac::TIM2.cnt().read()
 }
 
-/// Waker of control, which waits for one thing at a time.
 pub static WAITING: AtomicWaker = AtomicWaker::new();
 
 /// An instant, us; they wrap after 71 minutes, so two of them are compared only if they are less than half of that apart.
@@ -74,10 +72,8 @@ impl Deadline {
         Micros(clock_us())
     }
 
-    /// Waits until `ready` gives something, or until after `at`: then None. Ready is asked once more at the end, so what
-    /// came in time is not missed.
-    ///
-    /// Not an `async fn`: one that has an end can be asked again after it, which is a way to panic.
+    /// Waits until `ready` gives something, or until after `at`: then None. Ready is asked once more at the end. Not an `async fn`: one
+    /// that has an end can be asked again after it, which is a way to panic.
     pub fn until<T>(
         &self,
         at: Micros,

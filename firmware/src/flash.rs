@@ -1,10 +1,7 @@
 //! The chip's last two flash sectors, 6 and 7, as the log's flash. `memory.x` keeps the image out of them.
 //!
-//! The chip executes from the same bank, so the core stands still while a word is programmed (16 us, at most 100) and
-//! while a sector is erased (1 s, at most 2); interrupts wait, DMA and timers go on.
-//!
-//! embassy's driver erases with whatever width the register holds, after a reset a byte, which takes twice as long, and
-//! waits for ever if the flash never gets ready.
+//! The core stands still while a word is programmed (16 us, at most 100) and while a sector is erased (1 s, at most 2); interrupts wait,
+//! DMA and timers go on. embassy's driver erases by bytes after a reset, twice as long, and waits for ever if the flash never gets ready.
 
 use core::ptr::addr_of;
 
@@ -21,11 +18,9 @@ unsafe extern "C" {
     static __store_start: u32;
 }
 
-/// Words in one of the two sectors.
 const SECTOR_WORDS: usize = 128 * 1024 / 4;
 /// The number of the first of them (RM0383, table 4).
 const FIRST_SECTOR: u8 = 6;
-/// RM0383, section 3.5.1.
 const KEYS: [u32; 2] = [0x4567_0123, 0xCDEF_89AB];
 /// Longer than any word and any sector takes (DS10314, flash memory programming).
 const PATIENCE_WORD_US: u32 = 1_000;
@@ -51,22 +46,13 @@ impl Flash {
         INTERFACE.sr().modify(|_| {});
         INTERFACE.cr().write_value(control);
         start();
-        let ended = wait(patience_us);
+        let begun = clock_us();
+        while INTERFACE.sr().read().bsy() && clock_us().wrapping_sub(begun) <= patience_us {}
         let status = INTERFACE.sr().read();
         INTERFACE.cr().write(|w| w.set_lock(true));
         let failed = status.wrperr() || status.pgaerr() || status.pgperr() || status.pgserr();
-        if ended && !failed { Ok(()) } else { Err(FlashFailed) }
+        if !status.bsy() && !failed { Ok(()) } else { Err(FlashFailed) }
     }
-}
-
-fn wait(patience_us: u32) -> bool {
-    let begun = clock_us();
-    while INTERFACE.sr().read().bsy() {
-        if clock_us().wrapping_sub(begun) > patience_us {
-            return false;
-        }
-    }
-    true
 }
 
 /// The address of a word. None outside the sectors.

@@ -1,17 +1,16 @@
-//! The end of a run by a fault, and its mark for the next start.
-//!
-//! First the bridge goes off; everything else comes after. Then a mark is left in RAM, which a reset does not clear, and
-//! the chip is reset.
+//! The end of a run by a fault: the bridge goes off first, then a mark is left in RAM, which a reset does not clear, and the chip is
+//! reset. And a guard under the stack, whose fault is one of them.
 
 use core::mem::MaybeUninit;
 use core::ptr::{addr_of, addr_of_mut};
 
-use cortex_m::peripheral::SCB;
+use cortex_m::asm::{dsb, isb};
+use cortex_m::peripheral::{MPU, SCB};
 use cortex_m_rt::{ExceptionFrame, exception};
 use embassy_stm32::pac;
 use tenax_logic::restart::{self, Flags, Mark, Start};
 
-use crate::{black_box, bridge, vibrator};
+use crate::{black_box, board, bridge};
 
 /// Marks of the end of a run, as words in RAM; any other word is RAM after power-on.
 const MARKS: [(Mark, u32); 3] =
@@ -20,9 +19,7 @@ const MARKS: [(Mark, u32); 3] =
 /// Not initialised by the runtime: a reset leaves it as it is.
 #[unsafe(link_section = ".uninit.mark")]
 static mut KEPT: MaybeUninit<[u32; 2]> = MaybeUninit::uninit();
-/// Index of the mark.
 const MARK: usize = 0;
-/// Index of the number of restarts in a row.
 const RESTARTS: usize = 1;
 
 /// The cause of this start. Called once, first: it clears flags and mark.
@@ -44,7 +41,6 @@ pub fn start() -> Start {
     start
 }
 
-/// Ends the row of restarts.
 pub fn lived_well() {
     keep(RESTARTS, 0);
 }
@@ -63,7 +59,7 @@ fn keep(place: usize, word: u32) {
 pub fn give_up(mark: Mark, why: &str) -> ! {
     cortex_m::interrupt::disable();
     bridge::off();
-    vibrator::off();
+    board::vibrator_off();
     if let Some((_, word)) = MARKS.iter().find(|(own, _)| *own == mark) {
         keep(MARK, *word);
     }
@@ -72,9 +68,6 @@ pub fn give_up(mark: Mark, why: &str) -> ! {
 }
 
 /// A fault of the core: as a panic.
-///
-/// # Safety
-/// Called by the core only.
 #[exception]
 unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
     cortex_m::interrupt::disable();
@@ -86,19 +79,41 @@ unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
 
 /// The clock security system says that the crystal has stopped (RM0383, section 6.2.7): the chip runs on at 16 MHz, far too slow for
 /// a tick, and nobody knows how long that lasts.
-///
-/// # Safety
-/// Called by the core only.
 #[exception]
 unsafe fn NonMaskableInt() -> ! {
     give_up(Mark::CrystalLost, "")
 }
 
 /// An interrupt that nobody bound: as a panic.
-///
-/// # Safety
-/// Called by the core only.
 #[exception]
 unsafe fn DefaultHandler(_irq: i16) -> ! {
     give_up(Mark::Panicked, "an interrupt that nobody bound")
+}
+
+unsafe extern "C" {
+    /// The end of what is not initialised (cortex-m-rt's `link.x`): from here on there is only stack.
+    static __euninit: u32;
+}
+
+/// More than most functions take at once, 2 KiB; a region begins at a multiple of its size.
+const GUARD: u32 = 1 << GUARD_BITS;
+const GUARD_BITS: u32 = 11;
+/// RASR (ARM DDI 0403E, section B3.5.9): nothing may be executed, read or written, of this size, enabled.
+const NO_ACCESS: u32 = 1 << 28 | (GUARD_BITS - 1) << 1 | 1;
+/// CTRL (section B3.5.5): everything else as without it; not in the handler of a fault, which needs a stack.
+const ENABLED: u32 = 1 << 2 | 1;
+
+/// Switches the guard under the stack on: what overflows is a hard fault, and does not eat the black box, which lies below.
+pub fn guard_stack() {
+    let base = (addr_of!(__euninit) as u32 + GUARD - 1) & !(GUARD - 1);
+    // SAFETY: nobody uses these bytes but a stack that overflows, and nobody else sets a region.
+    unsafe {
+        let mpu = &*MPU::PTR;
+        mpu.rnr.write(0);
+        mpu.rbar.write(base);
+        mpu.rasr.write(NO_ACCESS);
+        mpu.ctrl.write(ENABLED);
+    }
+    dsb();
+    isb();
 }

@@ -105,7 +105,6 @@ pub fn open(
     (Up { _taken: () }, Down { read: 0 })
 }
 
-/// Stops the stream before what it reads is gone.
 struct Sending<'f>(PhantomData<&'f [u8]>);
 
 impl Drop for Sending<'_> {
@@ -116,9 +115,7 @@ impl Drop for Sending<'_> {
 }
 
 impl Up {
-    /// Sends it; over when DMA has handed on its last byte.
-    ///
-    /// Not an `async fn`: one that has an end can be asked again after it, which is a way to panic.
+    /// Sends it; over when DMA has handed on its last byte. Not an `async fn`, as [`Deadline::until`](crate::deadline::Deadline::until).
     pub fn send<'f>(&'f mut self, frame: &'f [u8]) -> impl Future<Output = ()> + 'f {
         let sending = Sending(PhantomData);
         SENT.store(false, Ordering::Relaxed);
@@ -145,7 +142,6 @@ impl Up {
 }
 
 impl Down {
-    /// Waits for bytes and takes as many as there are and fit.
     pub fn read<'b>(&'b mut self, bytes: &'b mut [u8]) -> impl Future<Output = Result<usize, Overrun>> + 'b {
         poll_fn(move |context| {
             // Before it is asked: what comes in between wakes.

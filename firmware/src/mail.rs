@@ -1,6 +1,6 @@
 //! The bounded boxes between control, which never waits, and the tasks of the serial line and of the store, which do.
 //!
-//! embassy's channels keep a `RefCell` inside, which is a way to panic; `tenax lint-image` sees to it that control has none.
+//! embassy's channels keep a `RefCell` inside, which is a way to panic.
 
 use core::cell::Cell;
 use core::future::poll_fn;
@@ -69,10 +69,8 @@ static TICK_WANTED: AtomicBool = AtomicBool::new(false);
 /// When it ended, us.
 static TICK_ENDED: Signal<CriticalSectionRawMutex, u32> = Signal::new();
 
-/// Hands a message to telemetry, numbered. Never waits: if the line is behind, the message is dropped and counted, and the
-/// other end sees the gap in the numbers.
-///
-/// For control only, which no other sender interrupts.
+/// Hands a message to telemetry, numbered. Never waits: if the line is behind, the message is dropped and counted. For control only,
+/// which no other sender interrupts.
 pub fn post(message: Up) {
     let sequence = NUMBER.fetch_add(1, Relaxed);
     if !UP.put(Received { sequence, message }) {
@@ -108,14 +106,11 @@ pub fn are_counters_due() -> bool {
     COUNTERS_DUE.swap(false, Relaxed)
 }
 
-/// Brings the oldest message posted to this place; waits for one. None: there is none and the counters are due, or the place was given
-/// away already.
-///
-/// Not an `async fn`: one that has an end can be asked again after it, which is a way to panic.
+/// Brings the oldest message posted to this place; waits for one. None: there is none and the counters are due. Not an `async fn`: one
+/// that has an end can be asked again after it, which is a way to panic.
 pub fn next_message(place: &mut MaybeUninit<Received<Up>>) -> impl Future<Output = Option<&Received<Up>>> {
     let mut place = Some(place);
     poll_fn(move |context| {
-        // Before it is asked: what comes in between wakes.
         UP_WAITING.register(context.waker());
         let Some(free) = place.take() else { return Poll::Ready(None) };
         if UP.take_to(free) {
@@ -127,13 +122,11 @@ pub fn next_message(place: &mut MaybeUninit<Received<Up>>) -> impl Future<Output
     })
 }
 
-/// Hands a command to control. Never waits: false if control has not taken the ones before, and no more than are earned
-/// at once fit anyway.
+/// Hands a command to control. Never waits: false if control has not taken the ones before.
 pub fn hand_over(command: Received<Down>) -> bool {
     DOWN.put(command)
 }
 
-/// The oldest command that control has not taken. Never waits.
 pub fn next_command() -> Option<Received<Down>> {
     DOWN.take()
 }
@@ -151,7 +144,6 @@ pub fn save(record: Record) {
 
 pub fn next_record() -> impl Future<Output = Record> {
     poll_fn(|context| {
-        // Before it is asked: what comes in between wakes.
         RECORD_WAITING.register(context.waker());
         let Some(record) = RECORD.lock(Cell::take) else { return Poll::Pending };
         RECORD_WAITS.store(false, Relaxed);
@@ -159,7 +151,6 @@ pub fn next_record() -> impl Future<Output = Record> {
     })
 }
 
-/// Says that a tick has ended, if the store waits for it.
 pub fn end_tick() {
     if TICK_WANTED.load(Relaxed) {
         TICK_WANTED.store(false, Relaxed);

@@ -8,7 +8,7 @@
 //! | scan's DMA, its deadline | their interrupts | 1 | a deadline is noticed late: a lost frame stays unnoticed |
 //! | [`control`]: frame, logic, bridge, watchdog | executor in interrupt I2C3_ER | 2 | switches step late, ticks run late |
 //! | the serial line's interrupts | USART2, DMA1 | 6 | below control or control jitters by them |
-//! | [`telemetry`], [`commands`] | thread executor | none | messages are dropped and counted, control goes on |
+//! | [`serial`]: telemetry, commands | thread executor | none | messages are dropped and counted, control goes on |
 //! | [`store`]: a word of flash after every fourth tick | thread executor | none | the core stalls in a tick |
 //! | idle | thread executor | none | sleeps in WFE until an interrupt |
 //!
@@ -18,29 +18,24 @@
 #![no_main]
 
 mod black_box;
+mod board;
 mod bridge;
-mod button;
 mod clock;
-mod commands;
 mod control;
 mod counts;
 mod deadline;
 mod flash;
 mod halves;
-mod identity;
 mod last_words;
 mod line;
 mod mail;
 mod scan;
-mod stack;
+mod serial;
 mod store;
 mod supply;
-mod switches;
-mod telemetry;
-mod vibrator;
-mod watchdog;
 
 use core::panic::PanicInfo;
+use core::ptr::addr_of;
 
 use cortex_m::peripheral::SCB;
 use defmt_rtt as _;
@@ -50,17 +45,15 @@ use embassy_stm32::{Peripherals, bind_interrupts, interrupt};
 use static_cell::{ConstStaticCell, StaticCell};
 use tenax_hal_shim::channel::FRAME_HZ;
 use tenax_hal_shim::motor::MotorBridge;
-use tenax_hal_shim::wire::{ResetCause, Up};
+use tenax_hal_shim::wire::{Identity, ResetCause, Up};
 use tenax_hal_shim::words::Fault;
-use tenax_logic::device::Device;
 use tenax_logic::rescue::{self, Rescue};
 use tenax_logic::restart::{Mark, Start};
 use tenax_logic::store::Erase;
 
+use crate::board::{Button, Switches, Vibrator, Watchdog};
 use crate::bridge::Bridge;
-use crate::button::Button;
 use crate::deadline::Deadline;
-use crate::watchdog::Watchdog;
 
 bind_interrupts!(struct Irqs {
     DMA2_STREAM0 => halves::OnHalf;
@@ -91,7 +84,7 @@ fn made(new: impl FnOnce() -> control::Control) -> &'static mut control::Control
 async fn main(spawner: Spawner) {
     // Before the clocks are waited for: until then the pins float.
     bridge::hold_low();
-    stack::guard();
+    last_words::guard_stack();
     let Start { after, cause, stay_off, .. } = last_words::start();
     let switched_on = cause == ResetCause::PowerOn;
     let browned_out = cause == ResetCause::Other && after.is_some();
@@ -125,16 +118,16 @@ async fn main(spawner: Spawner) {
     interrupt::I2C3_ER.set_priority(Priority::P2);
     defmt::info!("tenax: started, after {}", after.is_some());
 
-    let switches = switches::Switches::new(p.PB12, p.PB13, p.PB14, p.PB15);
+    let switches = Switches::new([p.PB12.into(), p.PB13.into(), p.PB14.into(), p.PB15.into()]);
     let button = Button::new(p.PC13, p.PC6, p.PC8);
-    let vibrator = vibrator::Vibrator::new(p.TIM4, p.PB6);
+    let vibrator = Vibrator::new(p.TIM4, p.PB6);
     let watchdog = Watchdog::new(p.IWDG);
     let (up, down) = line::open(p.USART2, (p.DMA1_CH5, p.DMA1_CH6), (p.PA2, p.PA3));
 
     // The first of all messages: a hello that comes after others would look like a second start.
     let after = if supplied { after } else { Some(Fault::SupplySagged) };
     mail::post(Up::Hello { frame_hz: FRAME_HZ as u16, after });
-    spawner.spawn(once(telemetry::telemetry(up)));
+    spawner.spawn(once(serial::telemetry(up)));
     if !supplied {
         // Starts anew when the supply can drive a motor.
         while supply::is_low() {
@@ -146,39 +139,24 @@ async fn main(spawner: Spawner) {
         // No control, for it may be what failed: the button opens.
         wait_for_button(&deadline, bridge, &button, watchdog).await
     }
-    spawner.spawn(once(commands::commands(down)));
-    let pins = [
-        p.PA0.into(),
-        p.PA1.into(),
-        p.PA4.into(),
-        p.PA5.into(),
-        p.PA6.into(),
-        p.PA7.into(),
-        p.PB0.into(),
-        p.PB1.into(),
-        p.PC0.into(),
-        p.PC1.into(),
-        p.PC2.into(),
-        p.PC3.into(),
-        p.PC4.into(),
-        p.PC5.into(),
-    ];
+    spawner.spawn(once(serial::commands(down)));
+    let port_a = (p.PA0, p.PA1, p.PA4, p.PA5, p.PA6, p.PA7);
+    let pins = (port_a, (p.PB0, p.PB1), (p.PC0, p.PC1, p.PC2, p.PC3, p.PC4, p.PC5));
     let scan = scan::Scan::new(p.ADC1, p.TIM3, p.DMA2_CH0, SCAN_RING.take(), deadline, pins);
 
     let control = made(|| control::Control::new((bridge, vibrator), switches, button, watchdog));
-    control.restore(|device| store::restore(device, &flash, &found));
+    let device = &mut control.device;
+    store::restore(device, &flash, &found);
     if !switched_on {
-        control.restore(Device::was_reset);
+        device.fingertip.was_reset();
     }
     if !crystal {
-        control.restore(|device| device.report(Fault::CrystalLost));
+        device.fingertip.report(Fault::CrystalLost);
     }
-    control.restore(|device| {
-        mail::post(device.start(identity::of(cause)));
-        if device.fingertip().config().stream_at_start {
-            store::restored(&flash, &found, mail::post);
-        }
-    });
+    mail::post(device.start(identity(cause)));
+    if device.fingertip.config().stream_at_start {
+        store::restored(&flash, &found, mail::post);
+    }
     spawner.spawn(once(store::store(flash, log)));
     let urgent = URGENT.start(interrupt::I2C3_ER);
     urgent.spawn(once(control::control(scan, control)));
@@ -200,6 +178,25 @@ async fn wait_for_button(
         next = next.after(rescue::STEP_US);
         deadline.until(next, || None::<()>).await;
     }
+}
+
+#[repr(C)]
+struct Note {
+    /// The lengths of its owner's name and of itself, its kind, the name `GNU`.
+    header: [u32; 4],
+    build: [u8; 8],
+}
+
+unsafe extern "C" {
+    static __build_id: Note;
+}
+
+fn identity(reset: ResetCause) -> Identity {
+    // SAFETY: the note is in flash, is longer than this, and nobody writes it.
+    let Note { header: _, build } = unsafe { addr_of!(__build_id).read() };
+    let chip = embassy_stm32::uid::uid();
+    let word = |n: usize| u32::from_le_bytes([chip[n], chip[n + 1], chip[n + 2], chip[n + 3]]);
+    Identity { build: u64::from_be_bytes(build), chip: [word(0), word(4), word(8)], reset }
 }
 
 /// A task that is started here and nowhere else.

@@ -9,7 +9,6 @@
 //! sequence numbers go on where time has got to.
 
 use embassy_stm32::Peri;
-use embassy_stm32::gpio::AnyPin;
 use embassy_stm32::pac::adc::regs::{Smpr1, Smpr2, Sqr1, Sqr2, Sqr3};
 use embassy_stm32::pac::adc::vals::{Dds, Exten, SampleTime};
 use embassy_stm32::pac::adccommon::vals::Adcpre;
@@ -55,16 +54,14 @@ impl Due {
 }
 
 impl Scan {
-    /// Takes the hardware; nothing is converted before [`run`](Self::run).
-    ///
-    /// `pins` are proof that nobody else uses them.
+    /// Takes the hardware; nothing is converted before [`run`](Self::run). `pins` are proof that nobody else uses them.
     pub fn new(
         adc: Peri<'static, ADC1>,
         timer: Peri<'static, TIM3>,
         stream: Peri<'static, DMA2_CH0>,
         ring: &'static mut [u32; RING_LEN],
         deadline: Deadline,
-        _pins: [Peri<'static, AnyPin>; SCAN_LEN],
+        _pins: impl Sized,
     ) -> Self {
         for (port, analog) in [pac::GPIOA, pac::GPIOB, pac::GPIOC].into_iter().zip(ANALOG) {
             port.moder().modify(|w| w.0 |= analog);
@@ -150,7 +147,6 @@ fn reset() {
     pac::ADC1.cr2().modify(|w| w.set_adon(true));
 }
 
-/// Lets TIM3 trigger scans of all ranks.
 fn listen(converter: pac::adc::Adc) {
     converter.sqr3().write_value(Sqr3(SEQUENCE[0]));
     converter.sqr2().write_value(Sqr2(SEQUENCE[1]));

@@ -16,7 +16,6 @@ use crate::{counts, mail};
 
 /// Ticks from one word to the next: the network's 78 words take 0.16 s, and the serial line keeps its share of the core.
 const TICKS_PER_WORD: u32 = 4;
-/// A word is not begun later than this after a tick's end.
 const LATEST_US: u32 = 250;
 const _: () = assert!(PAYLOAD_BYTES <= KEPT_MAX);
 
@@ -24,7 +23,7 @@ pub fn restore(device: &mut Device, flash: &Flash, found: &Found) {
     let mut buffer = [0; PAYLOAD_BYTES];
     for kept in Kept::ALL {
         if found.is_damaged(kept) {
-            device.report(Fault::RecordDamaged(kept));
+            device.fingertip.report(Fault::RecordDamaged(kept));
         }
         if let Some(payload) = found.read(flash, kept, &mut buffer) {
             device.restore(kept, payload);
@@ -32,7 +31,6 @@ pub fn restore(device: &mut Device, flash: &Flash, found: &Found) {
     }
 }
 
-/// Sends the restored records up, for a replay of this run.
 #[inline(never)]
 pub fn restored(flash: &Flash, found: &Found, tell: impl Fn(Up)) {
     let mut buffer = [0; PAYLOAD_BYTES];

@@ -3,8 +3,7 @@
 //! Two guards of the chip (DS10314, embedded reset and power control block; typical figures). The voltage detector at level 6
 //! (RM0383, section 5.2.3) says that the supply falls below 2.93 V: the bridge goes off and the chip is reset while code still
 //! runs as it should. Level 7 would be 3.03 V falling and 3.14 V rising: a dip of 0.25 V that harms nothing would let go of the
-//! motor, and a rail of 3.1 V would never start. The brown-out reset at level 3 holds the chip from 2.83 V on; its level is an
-//! option byte, which a chip from the factory has off, and which is programmed once.
+//! motor, and a rail of 3.1 V would never start. The brown-out reset at level 3 holds the chip from 2.83 V on.
 
 use embassy_stm32::interrupt;
 use embassy_stm32::interrupt::{InterruptExt, Priority};
@@ -22,7 +21,6 @@ const RISE_US: u32 = 1_000_000;
 const LINE: usize = 16;
 /// BOR_LEV: reset below 2.83 V.
 const BROWN_OUT_LEVEL_3: u8 = 0;
-/// RM0383, section 3.6.2.
 const OPTION_KEYS: [u32; 2] = [0x0819_2A3B, 0x4C5D_6E7F];
 /// Longer than the option bytes take (DS10314, flash memory programming).
 const PATIENCE_US: u32 = 4_000_000;
@@ -58,7 +56,7 @@ unsafe fn PVD() {
     last_words::give_up(Mark::SupplySagged, "")
 }
 
-/// Sees to it that the brown-out reset is on. Only where somebody has just switched the hand on: it may take a second.
+/// Switches the brown-out reset on. Only where somebody has just switched the hand on: it may take a second.
 pub fn hold_in_reset_when_too_low() {
     if FLASH.optcr().read().bor_lev() == BROWN_OUT_LEVEL_3 {
         return;

@@ -39,7 +39,6 @@ impl Behaviour {
 pub enum Ending {
     Done,
     Stopped,
-    /// A muscle became active, or a drive command came.
     TakenOver,
     /// A needed sensor gives no valid reading, or no pictures come.
     SensorLost,
@@ -48,7 +47,6 @@ pub enum Ending {
     Dropped,
     /// The grasp was loosened as far as allowed and nothing slipped; it is as firm as before.
     NoSlip,
-    /// Consent ended: a behaviour that opens the hand needs it to its end.
     NotArmed,
 }
 
@@ -68,7 +66,6 @@ impl Ending {
     }
 }
 
-/// Markers in one view at most.
 pub const MARKERS: usize = 24;
 /// The normal force of a marker that is not tracked.
 pub const UNTRACKED: u8 = u8::MAX;

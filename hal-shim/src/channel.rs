@@ -14,7 +14,6 @@ pub const SCAN_HZ: u32 = 8_000;
 pub const FRAME_HZ: u32 = SCAN_HZ / SCANS_PER_FRAME as u32;
 /// Frames in one slow frame: each switched signal is read once in it, myosensors three times.
 pub const FRAMES_PER_SLOW_FRAME: u8 = 25;
-/// Rate of slow frames, Hz: the rate of each switched signal.
 pub const SLOW_HZ: u32 = FRAME_HZ / FRAMES_PER_SLOW_FRAME as u32;
 pub const fn frames(ms: u32) -> u32 {
     ms * FRAME_HZ / 1_000
@@ -22,12 +21,9 @@ pub const fn frames(ms: u32) -> u32 {
 
 pub const SWITCH_INPUTS: u8 = 16;
 
-/// The input of switch B that is at the supply.
 pub const HIGH_SELECT: u8 = 14;
-/// The input of switch B that is at ground.
 pub const LOW_SELECT: u8 = 15;
 
-/// The largest 12-bit code of one conversion.
 pub const CODE_MAX: u16 = 4_095;
 /// The largest sample: the sum of four largest codes.
 pub const SAMPLE_MAX: u16 = CODE_MAX * SCANS_PER_FRAME as u16;
@@ -54,7 +50,6 @@ pub enum Input {
     SwitchA {
         select: u8,
     },
-    /// Behind switch B: read while the select lines show `select`.
     SwitchB {
         select: u8,
     },
@@ -81,7 +76,6 @@ pub enum Role {
     Force,
     Taxel,
     Muscle,
-    /// A sensor of the hand: opening or motor current.
     Hand,
 }
 
@@ -133,7 +127,6 @@ pub const FSR_SELECT: u8 = 12;
 /// Select of the flexor's envelope on switch B; the extensor's is the next one.
 pub const MYO_SELECT: u8 = 10;
 
-/// Every signal, in the order of the index constants.
 pub const CHANNELS: [Channel; COUNT] = [
     pvdf("pvdf_1", 0),
     pvdf("pvdf_2", 1),

@@ -29,26 +29,24 @@ impl DetectorId {
         [Self::S1, Self::S2, Self::Hebbian, Self::Mlp, Self::Injected, Self::Photoelastic];
     pub const COUNT: usize = Self::ALL.len();
 
-    pub const fn name(self) -> &'static str {
+    /// Name and title.
+    const fn names(self) -> (&'static str, &'static str) {
         match self {
-            Self::S1 => "s1",
-            Self::S2 => "s2",
-            Self::Hebbian => "hebbian",
-            Self::Mlp => "mlp",
-            Self::Injected => "injected",
-            Self::Photoelastic => "photoelastic",
+            Self::S1 => ("s1", "S1 vibration"),
+            Self::S2 => ("s2", "S2 Ft/Fn"),
+            Self::Hebbian => ("hebbian", "Hebbian"),
+            Self::Mlp => ("mlp", "MLP"),
+            Self::Injected => ("injected", "injected"),
+            Self::Photoelastic => ("photoelastic", "photoelastic"),
         }
     }
 
+    pub const fn name(self) -> &'static str {
+        self.names().0
+    }
+
     pub const fn title(self) -> &'static str {
-        match self {
-            Self::S1 => "S1 vibration",
-            Self::S2 => "S2 Ft/Fn",
-            Self::Hebbian => "Hebbian",
-            Self::Mlp => "MLP",
-            Self::Injected => "injected",
-            Self::Photoelastic => "photoelastic",
-        }
+        self.names().1
     }
 }
 
@@ -63,7 +61,6 @@ impl DetectorSet {
         Self(1 << id as u8)
     }
 
-    /// This set with `id` added (`is_in`) or removed.
     pub const fn with(self, id: DetectorId, is_in: bool) -> Self {
         let bit = 1 << id as u8;
         Self(if is_in { self.0 | bit } else { self.0 & !bit })
@@ -118,27 +115,22 @@ pub enum Direction {
     Up,
 }
 
-/// State of a detector's input.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum DetectorHealth {
     /// The detector does not work yet: its windows fill, or it has not seen the finger unloaded.
     #[default]
     Starting,
     Working,
-    /// The detector's sensors give no valid readings.
     Blind,
 }
 
-/// A detector's last conclusion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Evidence {
     pub slip: bool,
-    /// The object is about to slip.
     pub incipient: bool,
     /// Confidence, 0 to 1000 per mille; 500 at the threshold.
     pub confidence_permille: u16,
     pub direction: Direction,
-    /// Sequence number of the frame in which the detector decided this.
     pub decided_at: u32,
     pub health: DetectorHealth,
     /// The number that is compared with the threshold: the envelope (S1, 14-bit samples), Ft/Fn (S2, per mille), the
@@ -147,7 +139,6 @@ pub struct Evidence {
 }
 
 impl Evidence {
-    /// Whether the detector reports slip or a warning.
     pub const fn says(&self) -> bool {
         self.slip || self.incipient
     }

@@ -1,6 +1,5 @@
 //! The part of a board's flash that outlives a power cut: two sectors of words.
 
-/// Value of an erased word.
 pub const BLANK: u32 = u32::MAX;
 
 /// One of the two sectors. Each is erased as a whole.
@@ -25,8 +24,6 @@ impl Sector {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FlashFailed;
 
-/// Two sectors of flash.
-///
 /// An implementation guarantees:
 /// - a programmed word reads as what it was programmed with until its sector is erased, also without power; an erased
 ///   one reads [`BLANK`];
@@ -41,15 +38,9 @@ pub trait FlashArea {
     /// The word at `word` of `sector`; [`BLANK`] outside.
     fn read(&self, sector: Sector, word: usize) -> u32;
 
-    /// Programs a blank word.
-    ///
-    /// # Errors
-    /// If it was not blank, is outside the sector, or the flash reports an error.
+    /// Programs a blank word. Fails if it was not blank, is outside the sector, or the flash reports an error.
     fn program(&mut self, sector: Sector, word: usize, value: u32) -> Result<(), FlashFailed>;
 
-    /// Erases a sector: every word of it reads [`BLANK`] afterwards.
-    ///
-    /// # Errors
-    /// If the flash reports an error.
+    /// Erases a sector: every word of it reads [`BLANK`] afterwards. Fails if the flash reports an error.
     fn erase(&mut self, sector: Sector) -> Result<(), FlashFailed>;
 }

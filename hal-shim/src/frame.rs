@@ -123,9 +123,4 @@ mod tests {
         assert_eq!(scan_of_pins(&pins, MYO_SELECT)[RANK_SWITCH_B], 0);
         assert_eq!(scan_of_pins(&pins, 12)[RANK_SWITCH_A], 45);
     }
-
-    #[test]
-    fn one_frame_in_twenty_five_ends_a_slow_frame() {
-        assert_eq!((0..100).filter(|&n| Frame::lost(n).ends_slow_frame()).count(), 4);
-    }
 }

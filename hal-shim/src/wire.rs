@@ -3,7 +3,7 @@
 //! A frame is `COBS(postcard(version, sequence, message) ++ CRC-32)` and a zero byte. The version and the sequence number
 //! come first, so that a receiver of another version can say so, and a receiver that missed frames can count them.
 //! Variants are only ever added at the end. The types are the one source: [`SCHEMA`], `python/tenax/wire.json` and Python's decoder
-//! follow from them, and a byte that changes asks for a new [`VERSION`] (`tests/golden.rs`).
+//! follow from them, and a byte that changes asks for a new [`VERSION`] (`tests/wire/golden.rs`).
 //!
 //! ```
 //! use tenax_hal_shim::wire::{Down, FRAME_MAX, Receiver, Setting, encode};
@@ -16,30 +16,26 @@
 //! assert_eq!((received.sequence, received.message), (7, command));
 //! ```
 
-mod about;
 mod answer;
 mod down;
 mod framing;
-mod last;
 mod raw;
 mod samples;
-mod senses;
 mod slow;
-mod stuffing;
 mod tick;
 mod up;
 
 use postcard_schema::key::Key;
 
-pub use self::about::{About, Identity, KEPT_MAX, ResetCause, Restored, SETTINGS_MAX};
-pub use self::answer::{Answer, Refusal, SETTINGS_PER_ANSWER, Setting};
+pub use self::answer::{
+    About, Answer, Identity, KEPT_MAX, Last, PIECE_MAX, Refusal, ResetCause, Restored, SETTINGS_MAX,
+    SETTINGS_PER_ANSWER, Setting, WHY_MAX,
+};
 pub use self::down::{DRIVE_HOLD_MAX_MS, Down};
 pub use self::framing::{BadFrame, Received, Receiver, encode};
-pub use self::last::{Last, PIECE_MAX, WHY_MAX};
 pub use self::raw::{FRAMES_PER_RAW, Raw};
 pub use self::samples::SamplesSum;
-pub use self::senses::Senses;
-pub use self::slow::{DETECTORS_MAX, Forces, NETWORK_OUTPUTS, NetworkState, RECEPTORS, Slow};
+pub use self::slow::{DETECTORS_MAX, Forces, NETWORK_OUTPUTS, NetworkState, RECEPTORS, Senses, Slow};
 pub use self::tick::TickRecord;
 pub use self::up::{Counters, Event, EventKind, Up};
 

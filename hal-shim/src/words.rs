@@ -10,7 +10,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::detector::DetectorId;
 
-/// Mode of the grip reflex (Prosthesis, figure 9).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum GripMode {
     /// A sensor that the reflex needs is missing (at boot: not yet seen). The reflex commands nothing; the wearer
@@ -22,7 +21,6 @@ pub enum GripMode {
     Wearer,
     /// No other source drives the hand: the detectors are watched.
     Watch,
-    /// A detector reports slip: the hand closes.
     Slip,
     /// A detector warns, such as S2: the hand closes a little.
     Incipient,
@@ -49,18 +47,15 @@ impl fmt::Display for GripMode {
     }
 }
 
-/// Cause of a change of mode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum Cause {
     SensorsReady,
     SensorsLost,
     /// A myosensor became active, a drive command came, or a behaviour answers slip itself.
     TakenOver,
-    /// The muscles, the line and the behaviour no longer move the hand.
     Released,
     Slip(DetectorId),
     Incipient(DetectorId),
-    /// The closing pulse is over, or the force ceiling is reached.
     PulseOver,
     Settled,
 }
@@ -80,7 +75,6 @@ impl fmt::Display for Cause {
     }
 }
 
-/// Reason for which a sensor gives no number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum Reason {
     /// Below its live zero: a cut wire, a lost supply.
@@ -103,7 +97,6 @@ pub enum Reason {
     Endless,
 }
 
-/// An ability that the fingertip may lose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum Capability {
     /// Feel vibration, for S1.
@@ -119,7 +112,6 @@ pub enum DriveSource {
     #[default]
     Nobody,
     Wearer,
-    /// A drive command from the serial line.
     Link,
     Reflex,
     Behaviour,
@@ -128,12 +120,10 @@ pub enum DriveSource {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum Fault {
     SensorLost {
-        /// Index in [`CHANNELS`](crate::channel::CHANNELS).
         channel: u8,
         reason: Reason,
     },
     SensorBack {
-        /// Index in [`CHANNELS`](crate::channel::CHANNELS).
         channel: u8,
     },
     CapabilityLost(Capability),
@@ -147,14 +137,12 @@ pub enum Fault {
     /// The force sensor was loaded when the hand was switched on. Its readings still count from the calibrated zero,
     /// which the board never takes by itself.
     PressedAtBoot {
-        /// Index in [`CHANNELS`](crate::channel::CHANNELS).
         channel: u8,
     },
     /// The newest record of this is damaged, or power was lost while it was saved. The one before is used, or the default.
     RecordDamaged(Kept),
     /// There is no room to save this. The next start makes room; until then changes are lost at power-off.
     StoreFull(Kept),
-    /// The flash failed to save this: it is worn or protected.
     StoreFailed(Kept),
     /// The supply fell below what the chip needs, and it was reset.
     SupplySagged,
@@ -171,7 +159,6 @@ pub enum Fault {
 /// Reason for which the motor is not driven although a source asks for it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum MotorStop {
-    /// Opening is allowed.
     ClosingStalled,
     /// At its stop, or the gear is jammed. A new opening command is tried again.
     OpeningStalled,
@@ -225,7 +212,6 @@ impl Code {
 /// Relative motion (v1, equation 1) and direction (v2, equation 2).
 pub type Codes = [Code; 2];
 
-/// Reason for which the network does not learn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum NoLesson {
     /// No teacher, or too few codes yet.
@@ -240,12 +226,10 @@ pub enum NoLesson {
     Disturbed,
 }
 
-/// Source of a consent to commands of the serial line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum Consent {
     /// Switched on with a finger that is known to hold nothing.
     PowerUp,
-    /// Both muscles, held for two seconds.
     Muscles,
     Button,
 }
@@ -262,15 +246,11 @@ pub enum Line {
     Trusted,
 }
 
-/// Kind of record that outlives a power cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum Kept {
     Network,
-    /// The force sensor's zero.
     Zero,
-    /// Settings that differ from their default.
     Settings,
-    /// The wearer's calibration of the myosensors.
     Emg,
 }
 
@@ -295,7 +275,6 @@ impl Prompt {
     }
 }
 
-/// Reason for which a calibration of the myosensors was refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum CalibrationRefusal {
     /// An envelope wandered while the wearer should rest: a contraction, a loose electrode, interference.
@@ -337,10 +316,8 @@ impl fmt::Display for CalibrationRefusal {
     }
 }
 
-/// Agreement of contractions with the calibration of the myosensors.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum Fit {
-    /// The contractions fit, or it is not known.
     #[default]
     Fits,
     /// The electrodes have moved, or the wearer contracts differently: a new calibration is needed.
@@ -358,10 +335,8 @@ impl Fit {
     }
 }
 
-/// Progress of a calibration of the myosensors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum Calibration {
-    /// Prompt for the next 5 s.
     Asks(Prompt),
     Done {
         /// The smallest distance of two of the three states, in thousandths of their common standard deviation.

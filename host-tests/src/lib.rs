@@ -26,7 +26,6 @@ use tenax_logic::store::payload;
 /// Opening of the scenes' hand at full duty, mm a frame: 120 mm/s.
 const FULL_DUTY_MM: f64 = 120.0 / 2_000.0;
 
-/// Every channel at rest, both muscles at the tone of the scenes' wearer.
 fn relaxed() -> [f64; COUNT] {
     let mut pins_mv = CHANNELS.map(|channel| f64::from(channel.rest_mv));
     pins_mv[MYO_FLEXOR] += 50.0;
@@ -34,22 +33,16 @@ fn relaxed() -> [f64; COUNT] {
     pins_mv
 }
 
-/// A fingertip that is calibrated to the scenes' wearer and trusts its line.
 pub fn calibrated() -> Fingertip {
     let mut fingertip = Fingertip::trusting();
     fingertip.restore(Kept::Emg, &payload::of_emg(&wearer()));
     fingertip
 }
 
-/// The scenes' wearer.
-///
-/// # Panics
-/// Never: this wearer's contractions separate.
 pub fn wearer() -> EmgModel {
     EmgModel::of_uv([50_000; 2], [900_000, 95_000], [80_000, 560_000]).expect("they separate")
 }
 
-/// The command that gives a setting this value.
 pub fn set(id: SettingId, value: i32) -> Down {
     Down::Set(Setting { id: id.number(), value })
 }
@@ -75,7 +68,6 @@ pub fn rests(drives: &[MotorDrive]) -> bool {
     drives.iter().all(|drive| *drive == MotorDrive::Coast)
 }
 
-/// Distances by which this frame opens and closes the scenes' hand, mm.
 fn moved_mm(drive: MotorDrive) -> (f64, f64) {
     let mm = |duty: Duty| FULL_DUTY_MM * f64::from(duty.as_per_mille()) / 1e3;
     match drive {
@@ -85,12 +77,10 @@ fn moved_mm(drive: MotorDrive) -> (f64, f64) {
     }
 }
 
-/// Distance by which these frames open the scenes' hand, mm; closing does not count.
 pub fn opened_mm(drives: &[MotorDrive]) -> f64 {
     drives.iter().map(|drive| moved_mm(*drive).0).sum()
 }
 
-/// Distance by which this frame closes the scenes' hand, mm.
 pub fn closed_mm(drive: MotorDrive) -> f64 {
     moved_mm(drive).1
 }
@@ -102,12 +92,10 @@ pub struct Bench {
     /// Voltage of every pin, mV.
     pub pins_mv: [f64; COUNT],
     pub events: Vec<Event>,
-    /// Every slow frame so far.
     pub slows: Vec<Slow>,
     /// Amplitude of a 60 Hz vibration on all films, mV.
     pub vibration_mv: f64,
-    /// Largest load that moves from one array element to another in a slow frame, mV; their sum is constant. A sliding
-    /// object does this.
+    /// Largest load that moves between array elements in a slow frame, mV, as under a sliding object.
     pub sliding_mv: f64,
     /// Fluctuation of a contraction, rms, relative to its level above rest.
     pub lively: f64,
@@ -118,7 +106,6 @@ pub struct Bench {
     pub frames: u32,
     samples: LastSamples,
     muscle_noise: ChaCha8Rng,
-    /// State of two low-passes of each muscle.
     wander: [[f64; 2]; 2],
     noise: ChaCha8Rng,
 }
@@ -158,12 +145,10 @@ impl Bench {
         bench
     }
 
-    /// Load on the force sensor, N.
     pub fn load(&mut self, normal_n: f64, shear_n: f64) {
         self.load_quadrants(fsr_quadrants_n(normal_n, shear_n, 0.0));
     }
 
-    /// Forces on the four quadrants of the force sensor, N.
     pub fn load_quadrants(&mut self, newtons: [f64; FSR_COUNT]) {
         for (pin_mv, force_n) in self.pins_mv[FSR..].iter_mut().zip(newtons) {
             *pin_mv = fsr_mv(force_n, f64::powf).min(3_200.0);
@@ -176,18 +161,15 @@ impl Bench {
         self.pins_mv[pin] = f64::from(MYO_REST_MV) + mv;
     }
 
-    /// Presses every element of the array alike, mV above rest.
     pub fn press(&mut self, mv: f64) {
         self.pins_mv[ARRAY..ARRAY + ARRAY_COUNT].fill(f64::from(CHANNELS[ARRAY].rest_mv) + mv);
     }
 
-    /// Sets both muscles, mV above rest.
     pub fn muscles(&mut self, flexor_mv: f64, extensor_mv: f64) {
         self.pins_mv[MYO_FLEXOR] = f64::from(MYO_REST_MV) + flexor_mv;
         self.pins_mv[MYO_EXTENSOR] = f64::from(MYO_REST_MV) + extensor_mv;
     }
 
-    /// The frame that the pins give now.
     pub fn frame(&mut self) -> Frame {
         let sequence = self.frames;
         self.frames += 1;
@@ -217,8 +199,7 @@ impl Bench {
         frame
     }
 
-    /// Voltages of both myosensors' pins, mV. A contraction fluctuates below 6 Hz, and 5 % of it is heard by the other electrode.
-    /// A fault of an electrode is not heard by the other.
+    /// Voltages of both myosensors' pins, mV. A contraction fluctuates below 6 Hz; the other electrode hears 5 %.
     fn contract(&mut self) -> [f64; 2] {
         const PART: f64 = 0.02;
         const HEARS: f64 = 0.05;
@@ -237,7 +218,6 @@ impl Bench {
         [own[0].0 + HEARS * own[1].1, own[1].0 + HEARS * own[0].1]
     }
 
-    /// Each element gives some load to another one.
     fn slide(&mut self) {
         for giver in ARRAY..ARRAY + ARRAY_COUNT {
             let taker = self.noise.random_range(ARRAY..ARRAY + ARRAY_COUNT);
@@ -254,10 +234,8 @@ impl Bench {
         self.give(&frame)
     }
 
-    /// Gives this frame to the fingertip; collects its slow frames and events.
     pub fn give(&mut self, frame: &Frame) -> MotorDrive {
         let drive = self.fingertip.tick(frame);
-        // As the device does.
         self.samples.record(frame);
         if frame.slot() == slot_of(Job::Think) {
             self.fingertip.think(&self.samples);
@@ -269,12 +247,10 @@ impl Bench {
         drive
     }
 
-    /// Gives many frames; the drive of each.
     pub fn run(&mut self, frames: u32) -> Vec<MotorDrive> {
         (0..frames).map(|_| self.step()).collect()
     }
 
-    /// Gives many frames, of which those at these places of the slow frame are lost; the drive of each.
     pub fn run_losing(&mut self, places: &[u8], frames: u32) -> Vec<MotorDrive> {
         let give = |_| {
             let frame = self.frame();
@@ -290,15 +266,10 @@ impl Bench {
         self.pins_mv[film] = f64::from(CHANNELS[PVDF].rest_mv) + mv * phase.sin();
     }
 
-    /// Sends a command that must be accepted.
-    ///
-    /// # Panics
-    /// If it is refused.
     pub fn accepts(&mut self, command: Down) {
         assert_eq!(self.fingertip.command(&command), Ok(()), "{command:?}");
     }
 
-    /// Holds the button for so many frames and releases it for 0.1 s; the drive of each frame.
     pub fn press_button(&mut self, frames: u32) -> Vec<MotorDrive> {
         self.fingertip.button(true);
         let mut drives = self.run(frames);
@@ -315,7 +286,6 @@ impl Bench {
         self.kinds().filter(|other| *other == kind).count()
     }
 
-    /// Frames in which this channel was reported as lost, with the reasons.
     pub fn lost(&self, channel: usize) -> Vec<(u32, Reason)> {
         let lost = self.events.iter().filter_map(|event| match event.kind {
             EventKind::Fault(Fault::SensorLost { channel: lost, reason }) if usize::from(lost) == channel => {
@@ -326,17 +296,14 @@ impl Bench {
         lost.collect()
     }
 
-    /// Records of every tick of the slow frames so far.
     pub fn ticks(&self) -> impl Iterator<Item = &TickRecord> {
         self.slows.iter().flat_map(|slow| &slow.ticks)
     }
 
-    /// Ticks in which the reflex drove the motor.
     pub fn by_reflex(&self) -> usize {
         self.ticks().filter(|tick| tick.source == DriveSource::Reflex).count()
     }
 
-    /// Causes of the reflex's changes of mode so far.
     pub fn causes(&self) -> Vec<Cause> {
         let cause = |kind| if let EventKind::Mode { cause, .. } = kind { Some(cause) } else { None };
         self.kinds().filter_map(cause).collect()

@@ -6,7 +6,6 @@ use tenax_hal_shim::words::{Code, Codes, GripMode};
 
 use crate::Bench;
 
-/// The fingers slip along the object on their way up.
 pub const SLIPS_UP: Codes = [Code::Minus, Code::Plus];
 const LIFTS: Codes = [Code::Plus, Code::Plus];
 const LOWERS: Codes = [Code::Plus, Code::Minus];
@@ -14,9 +13,7 @@ const SLIPS_DOWN: Codes = [Code::Minus, Code::Minus];
 
 /// Vibration of a slip, below S1: only a network that has learned can answer it.
 pub const SLIP_MV: f64 = 70.0;
-/// Frames between two pictures.
 pub const PICTURE_FRAMES: u32 = 66;
-/// Age of a picture when it comes, ms.
 pub const AGE_MS: u16 = 40;
 
 impl Bench {
@@ -52,7 +49,6 @@ impl Bench {
         }
     }
 
-    /// Sends pictures with these codes, and gives the frames between them.
     pub fn teach(&mut self, codes: Codes, pictures: u32) {
         for _ in 0..pictures {
             self.accepts(Down::Teach { codes, age_ms: AGE_MS });

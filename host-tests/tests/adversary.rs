@@ -42,7 +42,6 @@ const OPENS_MV: i32 = 100;
 const SAFE_MM: f64 = 0.75;
 /// Opening again after this many frames counts as another opening: 4 s.
 const RENEWED_FRAMES: u32 = 8_000;
-/// Time of health and rest before an opening must be answered: 6 s.
 const WELL_FRAMES: u32 = 12_000;
 /// A proven opening continues for 1 s after its electrode fails (docs/emg.md).
 const ASKED_FRAMES: u32 = 2_200;
@@ -51,14 +50,10 @@ const BLIND_FRAMES: u32 = 800 + 25;
 
 const RESTS: Pin = Pin::Muscle(50.0);
 
-/// Source of a myosensor's voltage.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Pin {
-    /// A muscle, mV above rest.
     Muscle(f64),
-    /// A constant voltage, mV: broken, shorted, lifted, humming.
     Constant(f64),
-    /// A rising voltage, mV a frame.
     Creep(f64),
 }
 
@@ -68,7 +63,6 @@ impl Pin {
     }
 }
 
-/// A bystander's knowledge of one muscle.
 #[derive(Clone, Copy, Debug)]
 struct Muscle {
     pin: Pin,
@@ -112,13 +106,11 @@ impl Muscle {
 struct Walk {
     rng: ChaCha8Rng,
     bench: Bench,
-    /// Electrodes fail, the hand restarts and any setting is set; otherwise behaviours of every kind begin.
     electrodes_fail: bool,
     pins: [Pin; 2],
     muscles: [Muscle; 2],
     started_at: u32,
     humming: Option<usize>,
-    /// Places of the slow frame whose frames are lost.
     lost: Vec<u8>,
     no_wearer: bool,
     link_open_until: u32,
@@ -202,7 +194,6 @@ impl Walk {
         }
     }
 
-    /// Power off and on, with nonsense in flash beside the wearer's calibration.
     fn restart(&mut self, step: u32) {
         let mut fingertip = calibrated();
         for kept in Kept::ALL.into_iter().filter(|kept| *kept != Kept::Settings) {
@@ -268,7 +259,6 @@ impl Walk {
         }
     }
 
-    /// A teacher who says the same nonsense for some seconds.
     fn teach(&mut self, step: u32) {
         if self.rng.random_ratio(1, 6_000) {
             self.teacher_says = [0, 1].map(|_| self.any_of(&[Code::Minus, Code::Zero, Code::Plus]));
@@ -279,7 +269,6 @@ impl Walk {
         }
     }
 
-    /// Voltages of this frame.
     fn set_pins(&mut self, step: u32) {
         // Two electrodes that fail at once are not told apart (docs/emg.md).
         if self.pins.iter().all(|pin| pin.is_fault()) {
@@ -302,7 +291,6 @@ impl Walk {
         }
     }
 
-    /// One frame, as the bystander sees it too; the drive of the motor.
     fn step(&mut self, step: u32) -> MotorDrive {
         self.set_pins(step);
         let whole = self.bench.frame();
@@ -328,7 +316,6 @@ impl Walk {
     }
 }
 
-/// Counts of a walk, and the state of the bystander's judgement.
 #[derive(Debug, Default)]
 struct Seen {
     reflex: u32,
@@ -413,7 +400,6 @@ impl Seen {
         assert!(self.blind <= BLIND_FRAMES, "step {step}: {} frames closed blind", self.blind);
     }
 
-    /// One frame of the walk, and what must hold in it.
     fn step(&mut self, walk: &mut Walk, step: u32) -> MotorDrive {
         let slot = walk.bench.frames % 25;
         let lets_go =
@@ -447,7 +433,6 @@ impl Seen {
     }
 }
 
-/// Walks so many steps, or as many as the environment says.
 fn walk(steps: u32, electrodes_fail: bool) -> Seen {
     let number = |name: &str| std::env::var(name).ok().and_then(|text| text.parse().ok());
     let (steps, seed) = (number("TENAX_STEPS").unwrap_or(steps), number("TENAX_SEED").unwrap_or(SEED));

@@ -10,7 +10,6 @@ use tenax_host_tests::{Bench, closed_mm, closes, closing_frames, opened_mm, open
 use tenax_logic::setting::SettingId;
 
 const TURN: Behaviour = Behaviour::Turn { by_ddeg: 200 };
-/// A trusted line gives its trust back.
 fn distrust() -> Down {
     set(SettingId::LineTrusted, 0)
 }
@@ -25,12 +24,10 @@ fn view(moving_e4: u16, normal: u8, shear: i8) -> Down {
     })
 }
 
-/// A camera sees a still object with this shear.
 fn still(shear: i8) -> Down {
     view(0, 20, shear)
 }
 
-/// Runs with a picture 60 times a second.
 fn watch(bench: &mut Bench, frames: u32, picture: Down) -> Vec<MotorDrive> {
     let mut drives = Vec::new();
     for n in 0..frames {
@@ -47,7 +44,6 @@ fn ending(bench: &Bench) -> Option<Ending> {
     bench.kinds().filter_map(ending).last().flatten()
 }
 
-/// Holds an object that a camera sees with this shear, while this behaviour begins.
 fn holding(seed: u64, shear: i8, what: Behaviour) -> Bench {
     let mut bench = Bench::holding(seed);
     watch(&mut bench, 200, still(shear));
@@ -55,7 +51,6 @@ fn holding(seed: u64, shear: i8, what: Behaviour) -> Bench {
     bench
 }
 
-/// Holds an object that the taxels feel, without a camera.
 fn pressed(seed: u64) -> Bench {
     let mut bench = Bench::holding(seed);
     bench.press(300.0);

@@ -7,16 +7,13 @@ use tenax_hal_shim::words::{Calibration, CalibrationRefusal, DriveSource, Kept, 
 use tenax_host_tests::{Bench, closes, opens};
 use tenax_logic::store::keeper::Keeper;
 
-/// A press that releases the hand, frames: 1.2 s.
 const RELEASES: u32 = 2_400;
-/// A press that calibrates, frames: 3.1 s.
 const CALIBRATES: u32 = 6_200;
 
 fn opens_throughout(drives: &[MotorDrive]) -> bool {
     drives.iter().all(|drive| matches!(drive, MotorDrive::Open(duty) if duty.as_per_mille() <= 300))
 }
 
-/// Frames of a second in which the light is on.
 fn lit(bench: &mut Bench) -> usize {
     (0..2_000).filter(|_| bench.run(1).len() == 1 && bench.fingertip.light()).count()
 }

@@ -12,7 +12,6 @@ fn told(bench: &Bench) -> Vec<Calibration> {
     bench.kinds().filter_map(step).collect()
 }
 
-/// Answers the three prompts with these envelopes, mV above rest.
 fn calibrate(bench: &mut Bench, phases: [[f64; 2]; 3]) -> Vec<Calibration> {
     bench.accepts(Down::CalibrateEmg);
     for [flexor_mv, extensor_mv] in phases {

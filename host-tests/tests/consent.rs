@@ -13,7 +13,6 @@ const OPEN: Down = Down::Drive { drive: MotorDrive::Open(Duty::FULL), hold_ms: 2
 const CLOSE: Down = Down::Drive { drive: MotorDrive::Close(Duty::FULL), hold_ms: 250 };
 const COAST: Down = Down::Drive { drive: MotorDrive::Coast, hold_ms: 250 };
 
-/// A hand that trusts no line and holds a glass.
 fn distrustful(seed: u64) -> Bench {
     let mut bench = Bench::of(Fingertip::default(), seed);
     bench.run(200);
@@ -23,7 +22,6 @@ fn distrustful(seed: u64) -> Bench {
     bench
 }
 
-/// A refusal for want of consent.
 fn refuses(bench: &mut Bench, command: Down) {
     assert_eq!(bench.fingertip.command(&command), Err(Refusal::NotArmed), "{command:?}");
 }

@@ -1,7 +1,5 @@
-//! Intent of the wearer under every known fault of a myosensor: no fault of one electrode is ever proven to be a contraction, each is
-//! reported with its reason, and contractions are still answered.
+//! Intent of the wearer under every known fault of a myosensor: no fault of one electrode is ever proven, each is reported.
 
-use std::cell::Cell;
 use std::f64::consts::TAU;
 
 use proptest::prelude::*;
@@ -13,13 +11,11 @@ use tenax_logic::emg::model::EmgModel;
 use tenax_logic::emg::trust::Quality;
 use tenax_logic::emg::{Emg, Verdict, uv_of_sample};
 
-/// Times of the three pairs of readings in a slow frame, s.
 const AT_S: [f64; 3] = [0.005, 0.008, 0.011];
 /// Time constants of front ends, s; the first is the scenes', of 60 ms rise.
 const TAUS_S: [f64; 3] = [0.027, 0.015, 0.05];
 const CASES: u32 = 256;
 
-/// A linear congruential generator: quick, and seeded by a case.
 struct Noise(u64);
 
 impl Noise {
@@ -52,7 +48,6 @@ impl Muscle {
     }
 }
 
-/// Fault of an electrode.
 #[derive(Clone, Copy, Debug)]
 enum Fault {
     /// A voltage at the pin, mV above ground.
@@ -82,7 +77,6 @@ const WEARERS: [[[i32; 2]; 3]; 3] = [
     [[65, 141], [289, 161], [94, 989]],
 ];
 
-/// A wearer's calibration; none for the fourth, who is not calibrated.
 fn wearer(n: usize) -> Option<EmgModel> {
     let [rest, close, open] = WEARERS.get(n)?.map(|pair| pair.map(|mv| 1_000 * mv));
     Some(EmgModel::of_uv(rest, close, open).expect("they separate"))
@@ -92,7 +86,6 @@ fn rest_mv(n: usize) -> [f64; 2] {
     WEARERS.get(n).map_or([60.0; 2], |wearer| wearer[0].map(f64::from))
 }
 
-/// An electrode with a fault from 2 s on; the other one rests.
 struct Pins {
     rest: [f64; 2],
     muscles: [Muscle; 2],
@@ -154,10 +147,8 @@ fn hear(emg: &mut Emg) {
     }
 }
 
-/// Runs cases of one seed, `PROPTEST_RNG_SEED` or 11.
 fn runner() -> TestRunner {
     let seed = std::env::var("PROPTEST_RNG_SEED").ok().and_then(|seed| seed.parse().ok()).unwrap_or(11);
-    println!("seed {seed}, {CASES} cases");
     let config =
         Config { failure_persistence: None, rng_seed: RngSeed::Fixed(seed), ..Config::with_cases(CASES) };
     let mut bytes = [0; 32];
@@ -225,52 +216,4 @@ fn no_fault_of_one_electrode_is_proven_and_each_is_reported() {
             Ok(())
         })
         .unwrap();
-}
-
-/// Bursts of a muscle: rises of 50 to 300 ms, levels and fluctuation as on the recordings.
-#[test]
-fn bursts_of_a_muscle_are_answered_and_no_sensor_is_doubted() {
-    let strategy = (0usize..3, any::<bool>(), 0.05..0.3, 1.35..2.0, 0.4..3.0, any::<u64>());
-    let (sum, bursts) = (Cell::new(0.0), Cell::new(0.0));
-    runner()
-        .run(&strategy, |(person, opens, rise_s, over, held_s, seed): (usize, bool, f64, f64, f64, u64)| {
-            let mut emg = Emg::new(wearer(person).as_ref());
-            let rest = rest_mv(person);
-            let peak = WEARERS[person][if opens { 2 } else { 1 }].map(f64::from);
-            let (wished, other) = if opens { (Wish::Open, Wish::Close) } else { (Wish::Close, Wish::Open) };
-            let mut muscles = [Muscle::new(seed), Muscle::new(seed ^ 77)];
-            let (mut right, mut held) = (0, 0);
-            for slow in 0..80 * 12 {
-                let waves = [0, 1].map(|n: usize| muscles[n].step());
-                for at in AT_S {
-                    let t = f64::from(slow) / 80.0 + at;
-                    // Bursts at 2, 5 and 8 s; in between rest.
-                    let since = (t - 2.0).rem_euclid(3.0);
-                    let within = t > 2.0 && t < 11.0;
-                    let up = (since / rise_s).min(1.0) * ((held_s - since) / 0.1).clamp(0.0, 1.0);
-                    let uv = [0, 1].map(|n: usize| {
-                        let calm = rest[n] * (1.0 + (waves[n] - 1.0) / 3.0);
-                        let rises =
-                            if within { up * (over * peak[n] * waves[n] - calm).max(0.0) } else { 0.0 };
-                        Some(((calm + rises).min(2_900.0) * 1e3) as i32)
-                    });
-                    let verdict = emg.take(uv);
-                    hear(&mut emg);
-                    prop_assert!(verdict.wish != other, "{:?} at {} s", verdict, t);
-                    prop_assert_eq!((emg.quality(0), emg.quality(1)), (Quality::Good, Quality::Good));
-                    if within && since > rise_s + 0.1 && since < held_s - 0.1 {
-                        held += 1;
-                        right += u32::from(verdict.wish == wished);
-                    }
-                }
-            }
-            if held > 0 {
-                sum.set(sum.get() + f64::from(right) / f64::from(held));
-                bursts.set(bursts.get() + 1.0);
-            }
-            Ok(())
-        })
-        .unwrap();
-    let answered = sum.get() / bursts.get();
-    assert!(answered > 0.9, "{answered:.3} of held bursts answered");
 }

@@ -6,10 +6,8 @@ use tenax_hal_shim::words::GripMode::{self, Incipient, Settle, Slip, Standby, Wa
 use tenax_logic::feedback::{Feedback, Felt};
 
 const OFF: Duty = Duty::per_mille(0);
-/// Length of a burst and of the longest pattern, slow frames.
 const BURST: usize = 5;
 const PATTERN: usize = 15;
-/// The strong choice.
 const STRONG: u16 = 2;
 
 /// Input of a slow frame, and whether the reflex begins to answer slip before it.
@@ -24,7 +22,6 @@ fn holds(mode: GripMode, load_mn: i32) -> Felt {
     Felt { mode, load_mn: Some(load_mn), ..Felt::default() }
 }
 
-/// Duties of so many slow frames of the same input.
 fn for_frames(feedback: &mut Feedback, frames: usize, felt: Felt) -> Vec<Duty> {
     (0..frames).map(|_| feedback.step(STRONG, &felt)).collect()
 }

@@ -20,5 +20,4 @@ mod shear;
 mod sliding;
 mod store;
 mod touch;
-mod toy_detector;
 mod wearer;

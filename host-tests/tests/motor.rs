@@ -7,10 +7,8 @@ use tenax_hal_shim::wire::EventKind;
 use tenax_hal_shim::words::{DriveSource, MotorStop};
 use tenax_host_tests::{Bench, closing_frames, opens};
 
-/// Voltage of current and opening at nothing, mV.
 const ZERO_MV: f64 = 300.0;
 
-/// Gives many frames to a motor that does not move: 1 A at full duty.
 fn run_jammed(bench: &mut Bench, frames: u32) -> Vec<MotorDrive> {
     let step = |_| {
         let drive = bench.step();

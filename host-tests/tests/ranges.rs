@@ -14,7 +14,6 @@ use tenax_logic::store::payload;
 const N_PER_FRAME: f64 = 0.0125;
 /// Latest answer to slip, frames: 200 ms.
 const ANSWER_FRAMES: u32 = 400;
-/// Latest opening by a contraction, frames: 50 ms.
 const OPEN_FRAMES: u32 = 100;
 /// Force added after the ceiling is passed, N: the force is known 80 times a second, and its filter lags.
 const STOP_N: f64 = 1.0;
@@ -27,7 +26,6 @@ fn ends(id: SettingId) -> [(SettingId, i32); 2] {
     [(id, id.row().min), (id, id.row().max)]
 }
 
-/// Every pair of settings, each at both of its ends.
 fn pairs() -> Vec<[(SettingId, i32); 2]> {
     let all: Vec<_> = settings().into_iter().flat_map(ends).collect();
     let pairs = all.iter().enumerate().flat_map(|(n, one)| all[n + 1..].iter().map(|other| [*one, *other]));
@@ -50,7 +48,6 @@ fn holding(settings: &[(SettingId, i32)]) -> Bench {
     bench
 }
 
-/// Slip detection is switched off on purpose: by the mask, or by an S1 above every vibration.
 fn is_off(settings: &[(SettingId, i32)]) -> bool {
     [SettingId::DetectorsOff, SettingId::S1].iter().any(|id| settings.contains(&(*id, id.row().max)))
 }
@@ -76,7 +73,6 @@ fn check(settings: &[(SettingId, i32)]) {
     assert!(rests(&opening.run(100)), "{settings:?}: goes on opening");
 }
 
-/// Final force on a stiff object that slips all the time, N.
 fn squeezed_n(settings: &[(SettingId, i32)]) -> f64 {
     let mut bench = holding(settings);
     let mut fn_n = 2.5;
@@ -90,7 +86,6 @@ fn squeezed_n(settings: &[(SettingId, i32)]) -> f64 {
     fn_n
 }
 
-/// Checks each item, on all cores.
 fn on_all_cores<T: Sync>(items: &[T], check: impl Fn(&T) + Sync) {
     let cores = std::thread::available_parallelism().map_or(1, NonZero::get);
     std::thread::scope(|scope| {
@@ -106,7 +101,6 @@ fn every_pair_at_its_ends_rests_answers_slip_and_opens() {
     on_all_cores(&pairs(), |pair| check(pair));
 }
 
-/// The control: with the defaults, the reflex closes until the ceiling.
 // Shows R2.
 #[test]
 fn the_defaults_close_up_to_the_ceiling() {

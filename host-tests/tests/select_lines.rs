@@ -5,7 +5,6 @@ use tenax_hal_shim::wire::EventKind;
 use tenax_hal_shim::words::{Capability, Fault, Reason};
 use tenax_host_tests::{Bench, opens, rests};
 
-/// Lines S0 to S3, each stuck low and high, as in [`Bench::stuck_lines`].
 fn each() -> impl Iterator<Item = [u8; 2]> {
     (0..4).flat_map(|line| [[1 << line, 0], [0, 1 << line]])
 }

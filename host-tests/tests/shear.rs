@@ -32,7 +32,6 @@ fn taught_on_something_slippery(seed: u64) -> Bench {
     bench
 }
 
-/// Runs with this shear on the fingers; their final force, N.
 fn held(bench: &mut Bench, mut load_n: f64, shear_n: f64, frames: u32) -> f64 {
     for _ in 0..frames {
         bench.load(load_n, shear_n);
@@ -41,7 +40,6 @@ fn held(bench: &mut Bench, mut load_n: f64, shear_n: f64, frames: u32) -> f64 {
     load_n
 }
 
-/// Numbers of slips and of warnings of the network that the reflex answered.
 fn answered(bench: &Bench) -> (usize, usize) {
     let by = |wanted: Cause| bench.causes().iter().filter(|cause| **cause == wanted).count();
     (by(Cause::Slip(DetectorId::Hebbian)), by(Cause::Incipient(DetectorId::Hebbian)))

@@ -78,7 +78,7 @@ fn films_that_freeze_one_after_the_other_are_no_slip() {
 
 #[test]
 fn nothing_is_learned_from_a_disturbed_hand_a_late_picture_or_an_empty_one() {
-    let late = Config::default().hebbian.teacher.fresh_ms + 1;
+    let late = Config::default().hebbian.teacher_fresh_ms + 1;
     type Disturb = fn(&mut Bench);
     let all: [(Disturb, u16); 3] = [
         (|bench| bench.load(0.0, 0.0), AGE_MS),

@@ -14,10 +14,8 @@ use tenax_host_tests::teaching::SLIP_MV;
 use tenax_host_tests::{Bench, closes, closing_frames, opens, rests};
 use tenax_logic::config::Config;
 
-/// Two slow frames.
 const OPEN_WITHIN_FRAMES: u32 = 50;
 
-/// Holds something that slides, as the array alone feels it.
 fn sliding(seed: u64) -> Bench {
     let mut bench = Bench::holding(seed);
     bench.press(700.0);

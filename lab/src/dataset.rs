@@ -1,23 +1,23 @@
-//! Bamshad's collection method (section 3.2) as scenes, with the truth of the scenes as labels.
-//!
-//! A session is a box of one material, an array and a grip as they were set up once; it gives three recordings: balls are
-//! poured in until it slips, again and again; it is picked up and placed back; it is disturbed and does not slip. Whole
-//! sessions belong to training, validation or test, and one material to the test alone.
+//! Bamshad's collection method (section 3.2) as scenes, with the truth of the scenes as labels. Whole sessions belong to training, validation
+//! or test, and one material to the test alone.
 
 pub mod collect;
-pub mod manifest;
 pub mod operator;
 pub mod session;
 pub mod story;
 
+use std::collections::BTreeMap;
+
 use rayon::prelude::*;
-use tenax_hal_shim::channel::ARRAY_COUNT;
+use serde::Serialize;
+use sha2::{Digest, Sha256};
+use tenax_hal_shim::channel::{ARRAY_COUNT, SLOW_HZ};
+use tenax_sim::array::material::HELD_OUT;
 use tenax_sim::jobs::{Jobs, Told};
 use tenax_sim::labelled::{self, Part, library};
 use tenax_sim::scorer::onsets;
 
 use collect::{Recording, record};
-use manifest::Manifest;
 use session::{Session, Sizes, sessions};
 use story::Story;
 
@@ -84,7 +84,67 @@ impl Dataset {
         Ok(labelled::parse(self.csv()?.as_slice(), &library::choose(name.as_ref(), None)?, name)?)
     }
 
+    /// The manifest of these data, which are `csv` in `file`.
     pub fn manifest(&self, file: &str, csv: &[u8]) -> Manifest {
-        Manifest::new(&self.plan, file, csv, &self.sessions)
+        let mut split: BTreeMap<Part, Counts> = BTreeMap::new();
+        for (session, recordings) in &self.sessions {
+            let counts = split.entry(session.split).or_default();
+            counts.sessions += 1;
+            for recording in recordings {
+                counts.recordings += 1;
+                counts.steps += recording.steps.len();
+                counts.slip_steps += recording.steps.iter().filter(|step| step.slips).count();
+                counts.slips += recording.spans.iter().filter(|span| span.macro_onset_s.is_some()).count();
+                counts.dropped += usize::from(recording.dropped);
+            }
+        }
+        Manifest {
+            tool: format!("tenax {}", env!("CARGO_PKG_VERSION")),
+            seed: self.plan.seed,
+            sessions: self.plan.sessions,
+            file: file.to_owned(),
+            sha256: sha256(csv),
+            columns: COLUMNS,
+            rate_hz: SLOW_HZ,
+            held_out: HELD_OUT.name,
+            split,
+        }
     }
+}
+
+/// Enough to make a data set again, and to know that it is the same; written as TOML beside the data.
+#[derive(Clone, Debug, Serialize)]
+pub struct Manifest {
+    pub tool: String,
+    pub seed: u64,
+    /// Sessions to learn from, of each seen material.
+    pub sessions: usize,
+    pub file: String,
+    pub sha256: String,
+    pub columns: &'static str,
+    pub rate_hz: u32,
+    /// The material of the test alone.
+    pub held_out: &'static str,
+    pub split: BTreeMap<Part, Counts>,
+}
+
+const COLUMNS: &str = "split, session, material, recording; task: what is done in it; t_s: when the tenth element was read, s; \
+                       label: 1 slipped since the step before; slips: exact onsets of the slips whose micro onset is since the \
+                       step before, as micro/macro/end/mm in s and mm, no macro onset where it came to nothing, ! where it was \
+                       meant; a1 to a10: the elements' samples, 14 bits, 3300 mV full scale";
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Counts {
+    pub sessions: usize,
+    pub recordings: usize,
+    pub steps: usize,
+    pub slip_steps: usize,
+    /// Slips that the worlds counted.
+    pub slips: usize,
+    /// Recordings in which the box fell.
+    pub dropped: usize,
+}
+
+pub fn sha256(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }

@@ -1,11 +1,8 @@
-//! `tenax evaluate`: the force array's network on recordings that it never saw, step by step and slip by slip; the whole hand in the
-//! paper's two tasks; and intent recognition on people.
+//! `tenax evaluate`: the force array's network on recordings that it never saw; and intent recognition on people.
 
 pub mod emg;
 pub mod fit;
-pub mod online;
 pub mod report;
-pub mod roc;
 
 use tenax_sim::labelled::{Part, Recording};
 

@@ -1,8 +1,4 @@
-//! Cameras behind a clear skin: pictures from the `ffmpeg` program or from a drawn scene, through `tenax-vision`, to a report and tables.
+//! A camera behind a clear skin: pictures through `tenax-vision`, to a report, tables and the teacher's codes.
 
-pub mod calibrate;
-pub mod feed;
 pub mod film;
 pub mod scored;
-pub mod source;
-pub mod told;

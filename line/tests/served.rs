@@ -12,7 +12,7 @@ use tenax_hal_shim::words::Line;
 use tenax_logic::setting::SettingId;
 use tenax_scene::plant::{Pins, Plant};
 use tenax_sim::board::Run;
-use tenax_sim::live::{Live, Use};
+use tenax_sim::live::{Live, Person, Use};
 use tenax_sim::session::Board;
 
 const WITHIN: Duration = Duration::from_secs(5);
@@ -38,7 +38,7 @@ fn serve(options: Options, duration_s: f64, visit: impl FnOnce(&[Target]) + Send
     thread::scope(|scope| {
         let visitor = scope.spawn(move || visit(&places));
         let mut run = Run::default();
-        let live = Some(Live::new(down, |_| {}));
+        let live = Some(Live::new(down, Person::default()));
         let plant = Use { live, streams_at_start: false }.of(Rest(Pins::default(), duration_s));
         let began = Instant::now();
         run.summary = Board::Host.record(plant, &mut (&mut run, &mut server), &mut |_| {}).expect("a run").0;

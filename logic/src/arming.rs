@@ -11,7 +11,6 @@
 use tenax_hal_shim::channel::{FRAME_HZ, frames};
 use tenax_hal_shim::words::{Consent, Line};
 
-/// Frames from one step to the next: a fifth of a slow frame.
 pub const STEP_FRAMES: u32 = 5;
 const CONSENT_STEPS: u32 = frames(60_000) / STEP_FRAMES;
 const CO_CONTRACTION_STEPS: u32 = frames(2_000) / STEP_FRAMES;
@@ -24,7 +23,6 @@ const POWER_UP_STEPS: u32 = frames(10_000) / STEP_FRAMES;
 pub struct Signs {
     pub co_contraction: bool,
     pub button: bool,
-    /// None while the force sensor gives no number.
     pub unloaded: Option<bool>,
 }
 

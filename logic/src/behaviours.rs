@@ -39,7 +39,6 @@ pub enum Course {
     Ends(Ending),
 }
 
-/// Longest duration of each behaviour.
 const STROKE_FRAMES_MAX: u32 = frames(60_000);
 const GRASP_FRAMES_MAX: u32 = frames(20_000);
 const HAND_OVER_FRAMES_MAX: u32 = frames(20_000);
@@ -62,7 +61,6 @@ enum Doing {
 }
 
 impl Running {
-    /// None if a sensor or the camera that it needs is missing.
     pub fn begin(what: Behaviour, felt: &Felt<'_>) -> Option<Self> {
         let doing = match what {
             Behaviour::Stroke if felt.grip == Grip::Unknown => return None,
@@ -118,7 +116,6 @@ pub const fn may_answer_slip(what: Behaviour) -> bool {
     matches!(what, Behaviour::Stroke | Behaviour::HandOver | Behaviour::Turn { .. })
 }
 
-/// The line may still command, the load is known, and the reflex is not closing.
 pub const fn may_relax(line: Line, grip: Grip, mode: GripMode) -> bool {
     let commands = matches!(line, Line::Armed { .. } | Line::Trusted);
     let known = !matches!(grip, Grip::Unknown);

@@ -30,7 +30,6 @@ pub struct Config {
     pub stream_at_start: bool,
     pub no_wearer: bool,
     pub detectors_off: DetectorSet,
-    /// 0 off, 1 discreet, 2 strong.
     pub feedback: u16,
 }
 
@@ -60,7 +59,6 @@ const TABLES: [&[Row]; 9] = [
     Config::ROWS,
 ];
 
-/// Largest S2 that a stroke may measure, per mille.
 const MEASURED_MAX_PERMILLE: i32 = 900;
 
 impl Default for Config {
@@ -106,7 +104,6 @@ impl Config {
         self.parts().into_iter().find_map(|part| part.value(id)).unwrap_or_default()
     }
 
-    /// The accepted range, if the value is outside it.
     pub fn set(&mut self, id: SettingId, value: i32) -> Result<(), RangeInclusive<i32>> {
         let range = id.row().range();
         if !range.contains(&value) {

@@ -24,9 +24,7 @@ pub use injected::Injected;
 #[derive(Clone, Copy, Debug)]
 pub struct Sensed<'a> {
     pub frame: u32,
-    /// 0 to 24.
     pub slot: u8,
-    /// False: no samples; only time has passed.
     pub valid: bool,
     pub vibration: Vibration,
     /// Envelopes in the slip band, Q16 samples (14 bits).
@@ -36,7 +34,6 @@ pub struct Sensed<'a> {
     pub forces: Option<&'a Forces>,
     pub forces_are_new: bool,
     pub taxels: &'a Reading,
-    /// Without readings while a film is in its place.
     pub head: &'a Head,
     pub unloaded: bool,
     pub grasp: bool,
@@ -61,7 +58,6 @@ impl Said {
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Description {
-    /// 0 to 1000 per mille.
     pub confidence_permille: u16,
     pub direction: Direction,
     pub health: DetectorHealth,

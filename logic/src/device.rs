@@ -18,12 +18,12 @@ use crate::setting::SettingId;
 use heapless::Vec;
 use tenax_hal_shim::channel::FRAMES_PER_SLOW_FRAME;
 use tenax_hal_shim::frame::Frame;
-use tenax_hal_shim::motor::{Duty, MotorDrive};
+use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::schedule::{Job, slot_of};
 use tenax_hal_shim::wire::{
     About, Answer, Down, Identity, Last, Received, Refusal, SCHEMA, Senses, Setting, Up,
 };
-use tenax_hal_shim::words::{Fault, Kept, Line};
+use tenax_hal_shim::words::{Kept, Line};
 
 use crate::fingertip::Fingertip;
 use crate::samples::LastSamples;
@@ -34,7 +34,7 @@ use crate::stream::Stream;
 
 #[derive(Clone, Debug)]
 pub struct Device {
-    fingertip: Fingertip,
+    pub fingertip: Fingertip,
     samples: LastSamples,
     keeper: Keeper,
     session: Session,
@@ -61,14 +61,6 @@ impl Device {
         }
     }
 
-    pub const fn fingertip(&self) -> &Fingertip {
-        &self.fingertip
-    }
-
-    pub const fn fingertip_mut(&mut self) -> &mut Fingertip {
-        &mut self.fingertip
-    }
-
     pub fn restore(&mut self, kept: Kept, payload: &[u8]) {
         self.fingertip.restore(kept, payload);
         self.keeper = self.fingertip.keeper();
@@ -86,40 +78,10 @@ impl Device {
 
     #[inline(never)]
     fn about(&self) -> About {
-        // Not `collect`, which could panic.
-        let mut settings = Vec::new();
-        let all = SettingId::ALL.into_iter().map(|id| self.setting(id));
-        all.take_while(|setting| settings.push(*setting).is_ok()).for_each(drop);
+        let settings = self.settings(0);
         About { identity: self.identity, schema: SCHEMA, frames: self.stream.next(), settings }
     }
 
-    pub fn report(&mut self, fault: Fault) {
-        self.fingertip.report(fault);
-    }
-
-    pub const fn button(&mut self, is_down: bool) {
-        self.fingertip.button(is_down);
-    }
-
-    /// The motor bridge reports that it has switched itself off; until the next call.
-    pub const fn bridge(&mut self, is_off: bool) {
-        self.fingertip.bridge(is_off);
-    }
-
-    pub fn light(&self) -> bool {
-        self.fingertip.light()
-    }
-
-    pub fn feedback(&mut self) -> Duty {
-        self.fingertip.feedback()
-    }
-
-    /// The start was a reset, not a power-up: no consent follows from it. Call it before the first tick.
-    pub const fn was_reset(&mut self) {
-        self.fingertip.was_reset();
-    }
-
-    /// Drive of the motor until the next frame, 0.5 ms later.
     pub fn tick(&mut self, frame: &Frame) -> MotorDrive {
         let drive = self.fingertip.tick(frame);
         self.sampled(frame);
@@ -144,7 +106,7 @@ impl Device {
     /// `Taken`, to be sent before the answer of a command while frames are streamed.
     pub fn taken(&self, received: &Received<Down>) -> Option<Up> {
         let Received { sequence: of, message: command } = *received;
-        self.stream.is_raw().then_some(Up::Taken { before: self.stream.next(), of, command })
+        self.stream.raw.then_some(Up::Taken { before: self.stream.next(), of, command })
     }
 
     pub fn carry_out(&mut self, received: &Received<Down>) -> Result<(), Refusal> {
@@ -164,15 +126,7 @@ impl Device {
             (Err(refusal), _) => Answer::Refused(refusal),
             (Ok(()), Down::Set(Setting { id, .. }) | Down::Get(id)) => SettingId::from_number(id)
                 .map_or(Answer::Refused(Refusal::UnknownSetting), |id| Answer::Setting(self.setting(id))),
-            (Ok(()), Down::Settings(from)) => {
-                let asked = SettingId::ALL.into_iter().filter(|id| id.number() >= from);
-                let mut settings = Vec::new();
-                asked
-                    .map(|id| self.setting(id))
-                    .take_while(|setting| settings.push(*setting).is_ok())
-                    .for_each(drop);
-                Answer::Settings(settings)
-            }
+            (Ok(()), Down::Settings(from)) => Answer::Settings(self.settings(from)),
             (Ok(()), Down::Samples) => Answer::Samples(self.samples.in_order()),
             (Ok(()), Down::Hello) => Answer::Nonce(self.session.offer()),
             (Ok(()), Down::About) => Answer::About(self.about()),
@@ -190,14 +144,23 @@ impl Device {
         Senses { frame: self.fingertip.frame(), samples: self.samples.in_order(), films }
     }
 
+    /// As many as fit, from this number on.
+    fn settings<const N: usize>(&self, from: u8) -> Vec<Setting, N> {
+        // Not `collect`, which could panic.
+        let mut settings = Vec::new();
+        let asked = SettingId::ALL.into_iter().filter(|id| id.number() >= from).map(|id| self.setting(id));
+        asked.take_while(|setting| settings.push(*setting).is_ok()).for_each(drop);
+        settings
+    }
+
     fn setting(&self, id: SettingId) -> Setting {
         Setting { id: id.number(), value: self.fingertip.config().get(id) }
     }
 
     pub fn has_message(&self) -> bool {
         self.fingertip.has_slow()
-            || self.stream.has_raw()
-            || self.stream.wants_senses()
+            || self.stream.raw_is_ready
+            || self.stream.senses_are_due
             || self.fingertip.has_event()
     }
 
@@ -209,11 +172,10 @@ impl Device {
             self.session.stir(slow.samples_sum ^ slow.frame);
             return Some(Up::Slow(slow));
         }
-        if self.stream.has_raw() {
+        if self.stream.raw_is_ready {
             return self.stream.take_raw().map(Up::Raw);
         }
-        if self.stream.wants_senses() {
-            self.stream.gave_senses();
+        if core::mem::take(&mut self.stream.senses_are_due) {
             return Some(Up::Senses(self.senses()));
         }
         if self.fingertip.has_event() {

@@ -93,7 +93,6 @@ impl Feedback {
     }
 }
 
-/// Doublings of 1 N: 1 from there on, 2 from 2 N on.
 fn step_of(load_mn: Option<i32>) -> u8 {
     let newtons = load_mn.unwrap_or_default().max(0).unsigned_abs() / 1_000;
     ((u32::BITS - newtons.leading_zeros()) as u8).min(STEPS)

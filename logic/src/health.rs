@@ -7,11 +7,8 @@ use tenax_hal_shim::words::Reason;
 pub struct Limits {
     pub low: u16,
     pub high: u16,
-    /// Equal readings in a row that no working sensor gives.
     pub stuck_after: u32,
-    /// Bad readings in a row after which it is reported. A single one already has no value.
     pub lost_after: u32,
-    /// Good readings in a row after which a lost sensor is believed again.
     pub back_after: u32,
 }
 
@@ -39,15 +36,15 @@ pub enum Change {
 pub struct SensorHealth {
     /// Previous 14-bit sample; 0 at start.
     last: u16,
-    same: u32,
+    /// Readings in a row that equal the one before them.
+    pub same: u32,
     bad: u32,
     good: u32,
-    lost: Option<Reason>,
+    pub lost: Option<Reason>,
 }
 
 impl SensorHealth {
-    /// In range, different from the last, of a sensor that is not lost: the usual case. False, and nothing
-    /// changed, if not.
+    /// True, and counted, if in range, different from the last, and not lost: the usual case.
     #[inline]
     #[must_use]
     pub fn is_plain(&mut self, limits: &Limits, sample: u16) -> bool {
@@ -59,7 +56,6 @@ impl SensorHealth {
         plain
     }
 
-    /// As if plain readings had been taken, this one last.
     pub const fn was_plain(&mut self, last: u16) {
         self.last = last;
         self.same = 0;
@@ -119,18 +115,6 @@ impl SensorHealth {
         let is_new = self.lost.is_none();
         self.lost.get_or_insert(reason);
         is_new.then_some(Change::Lost(reason))
-    }
-
-    pub const fn same(&self) -> u32 {
-        self.same
-    }
-
-    pub const fn lost(&self) -> Option<Reason> {
-        self.lost
-    }
-
-    pub const fn is_lost(&self) -> bool {
-        self.lost.is_some()
     }
 }
 

@@ -1,6 +1,7 @@
 //! Telemetry of every tick: the records of a slow frame, and the events in between.
 
 use heapless::Deque;
+use tenax_hal_shim::channel::FRAMES_PER_SLOW_FRAME;
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::wire::{Event, EventKind, SamplesSum, TickRecord};
 use tenax_hal_shim::words::{Cause, Fault, GripMode, MotorStop};
@@ -12,11 +13,10 @@ const EVENTS: usize = 32;
 #[derive(Clone, Debug, Default)]
 pub struct Journal {
     frame: u32,
-    ticks: [TickRecord; tenax_hal_shim::channel::FRAMES_PER_SLOW_FRAME as usize],
+    ticks: [TickRecord; FRAMES_PER_SLOW_FRAME as usize],
     samples: SamplesSum,
     events: Deque<Event, EVENTS>,
     events_lost: u16,
-    /// A sensor, an ability or the motor was lost, which the wearer is to be told.
     lost: bool,
 }
 
@@ -35,7 +35,6 @@ impl Journal {
         self.frame
     }
 
-    /// `place`: 0 to 24; larger ones are ignored.
     pub fn tick(&mut self, place: u8, record: TickRecord) {
         if let Some(slot) = self.ticks.get_mut(usize::from(place)) {
             *slot = record;
@@ -43,9 +42,7 @@ impl Journal {
     }
 
     /// Ticks of the slow frame, and the checksum ([`SamplesSum`]) of their samples.
-    pub fn take_slow(
-        &mut self,
-    ) -> ([TickRecord; tenax_hal_shim::channel::FRAMES_PER_SLOW_FRAME as usize], u32) {
+    pub fn take_slow(&mut self) -> ([TickRecord; FRAMES_PER_SLOW_FRAME as usize], u32) {
         (self.ticks, self.samples.take())
     }
 
@@ -57,8 +54,7 @@ impl Journal {
         self.event(EventKind::Fault(fault));
     }
 
-    /// A full queue drops and counts the event. Not inlined: events are rare, and each caller would carry a
-    /// copy of the queue's code.
+    /// A full queue drops and counts the event. Not inlined: events are rare.
     #[inline(never)]
     pub fn event(&mut self, kind: EventKind) {
         self.lost |= matches!(
@@ -88,7 +84,6 @@ impl Journal {
     }
 }
 
-/// Queues the fault of a sensor's change, if there is one.
 pub fn report(journal: &mut Journal, channel: usize, change: Option<Change>) {
     let channel = channel as u8;
     match change {

@@ -49,7 +49,6 @@ const fn index(cause: Cause) -> usize {
     }
 }
 
-/// By mode and cause, for look-ups without a search.
 static NEXT: [[Option<GripMode>; CAUSES]; MODES] = {
     let mut next = [[None; CAUSES]; MODES];
     let mut row = 0;
@@ -61,7 +60,6 @@ static NEXT: [[Option<GripMode>; CAUSES]; MODES] = {
     next
 };
 
-/// None if the mode stays.
 pub const fn next(from: GripMode, cause: Cause) -> Option<GripMode> {
     NEXT[from as usize][index(cause)]
 }

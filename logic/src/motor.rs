@@ -29,14 +29,10 @@ use crate::arming::STEP_FRAMES;
 use crate::health::{Change, Limits, SensorHealth};
 use crate::journal::{Journal, report};
 
-/// Looks at the drive in a slow frame.
 const STEPS: u32 = FRAMES_PER_SLOW_FRAME as u32 / STEP_FRAMES;
-/// Slow frames of stall after which the motor stops: 0.3 s, so that 0.5 s are kept with the filter at the pin
-/// and the dead time.
+/// Slow frames of stall after which the motor stops: 0.3 s.
 const STALL_CYCLES: u8 = 24;
-/// Mean duty below which the motor does not move, per mille.
 const LEAST_PERMILLE: u32 = 50;
-/// Increase of the duty from which a stalled motor is driven again, per mille.
 const STRONGER_PERMILLE: u16 = 125;
 /// Least change of the opening's reading of moving fingers: 8 mV, a third of a millimetre.
 const MOVED: u16 = sample_from_mv(8);
@@ -44,9 +40,7 @@ const MOVED: u16 = sample_from_mv(8);
 const HEAT_SHIFT: u32 = 9;
 /// Slow frames without a drive after which no current flows: 0.2 s, with the motor's dead time.
 const IDLE_CYCLES: u8 = 16;
-/// Further such slow frames in which a current means a fault of sensor or bridge.
 const ODD_CYCLES: u8 = 16;
-/// Milliamperes of a sample, 14 fraction bits.
 const MA_Q14: u32 =
     (((REFERENCE_MV as u64 * 1_000) << 14) / (SAMPLE_MAX as u64 * MOTOR_MV_PER_A as u64)) as u32;
 
@@ -58,7 +52,6 @@ const REST: u16 = sample_from_mv(CHANNELS[MOTOR_CURRENT].rest_mv);
 #[derive(Clone, Debug, Default)]
 struct Sensor {
     health: SensorHealth,
-    /// Sample of this slow frame; None if its frame was lost.
     sample: Option<u16>,
 }
 
@@ -74,14 +67,12 @@ impl Sensor {
 pub struct Motor {
     current: Sensor,
     opening: Sensor,
-    /// Opening as the fingers were last seen to move.
     stood: u16,
     /// Sum of the duty over the looks of this slow frame; the largest since the stall began.
     duty_sum: u16,
     duty_most: u16,
     asked: bool,
     opens: bool,
-    /// Slow frames of stall, less those without.
     stall: u8,
     stalled: bool,
     /// mA^2 times `2^HEAT_SHIFT` in the steady state.
@@ -92,16 +83,13 @@ pub struct Motor {
     is_barred: bool,
     told: Option<MotorStop>,
     bridge_is_off: bool,
-    /// Slow frames without a drive, and those of them with current.
     idle: u8,
     odd: u8,
-    /// The sensor shows a current that cannot be.
     contradicts: bool,
 }
 
 impl Motor {
-    /// 14-bit reading of current or opening, None if its frame was lost. Used by [`judge`](Self::judge)
-    /// later: the array has work in the same slots.
+    /// 14-bit reading of current or opening, None if its frame was lost, for [`judge`](Self::judge).
     pub const fn take(&mut self, channel: usize, sample: Option<u16>) {
         let sensor = if channel == OPENING { &mut self.opening } else { &mut self.current };
         sensor.sample = sample;
@@ -125,8 +113,8 @@ impl Motor {
         }
     }
 
-    /// `asked` was requested in the last frame, `drive` is what the limits allowed of it. A request for the
-    /// other direction ends a stall. Call it every [`STEP_FRAMES`] frames.
+    /// `drive`: part of `asked` that the limits allowed. A request for the other direction ends a stall. Call it
+    /// every [`STEP_FRAMES`] frames.
     pub const fn step(&mut self, asked: MotorDrive, drive: MotorDrive) {
         let opens = match asked {
             MotorDrive::Coast => return,
@@ -218,7 +206,6 @@ impl Motor {
         }
     }
 
-    /// mA at the pin. None without a number, or with one that cannot be.
     fn current_ma(&mut self, stall_ma: u32, journal: &mut Journal) -> Option<u32> {
         let reading = self.current.reading(MOTOR_CURRENT, journal)?;
         let ma = (u32::from(reading.saturating_sub(REST)) * MA_Q14) >> 14;
@@ -240,7 +227,6 @@ impl Motor {
         (!self.contradicts).then_some(ma)
     }
 
-    /// None while the opening gives no number.
     fn moved(&mut self, journal: &mut Journal) -> Option<bool> {
         let opening = self.opening.reading(OPENING, journal)?;
         let moved = opening.abs_diff(self.stood) > MOVED;
@@ -250,8 +236,7 @@ impl Motor {
         Some(moved)
     }
 
-    /// Heat of a slow frame. An unknown current counts as that of a blocked motor, or half of it while the
-    /// fingers move. A motor that is not driven cools, whatever current the sensor shows.
+    /// Heat of a slow frame. An unknown current counts as that of a blocked motor, or half of it while it moves.
     fn warm(&mut self, limit_ma: u32, stall_ma: u32, ma: Option<u32>, moved: Option<bool>, duty: u32) {
         let blocked_ma = stall_ma * duty / 1_000;
         let warms = match (ma, moved) {

@@ -14,14 +14,9 @@ use crate::emg::{Emg, Verdict, uv_of_sample};
 use crate::health::{Limits, SensorHealth};
 use crate::journal::Journal;
 
-/// Readings that a muscle may miss in a row: all of one slow frame.
 const MISSES: u8 = 3;
-/// Readings of each myosensor a second: three places in every slow frame.
 const HZ: u32 = 3 * SLOW_HZ;
-/// Equal readings of an active muscle in a row that no muscle gives: 50 ms.
 const FROZEN_AFTER: u32 = HZ / 20;
-
-/// A gap of 50 ms is bridged.
 static LIMITS: Limits = Limits { lost_after: HZ / 20 + 1, ..Limits::of(&CHANNELS[MYO_FLEXOR], HZ) };
 
 #[derive(Clone, Debug)]
@@ -40,22 +35,18 @@ pub struct Muscles {
     /// Two active readings in a row that differ: a glitch or a frozen sensor is not a wish.
     confirmed: [bool; 2],
     lost: [Option<Reason>; 2],
-    /// Last readings in range, uV above the live zero.
     uv: [Option<i32>; 2],
     model: Option<EmgModel>,
     watch: Watch,
     lesson: Option<Lesson>,
-    /// Frame at which the last calibration ended, and whether it was taken.
     ended: Option<(u32, bool)>,
 }
 
-/// Light: result of a calibration; on and off of a refusal; of the prompt to open; period and flash of the
-/// prompt to rest.
+/// Light: a calibration's result; on and off of a refusal; of the prompt to open; period and flash of rest.
 const RESULT_FRAMES: u32 = frames(2_000);
 const REFUSED_FRAMES: u32 = frames(50);
 const OPEN_FRAMES: u32 = frames(100);
 const REST_FRAMES: [u32; 2] = [frames(1_000), frames(100)];
-/// Period of the flashes while the calibration does not fit: two, or three for exchanged electrodes.
 const ASK_FRAMES: u32 = frames(4_000);
 
 impl Muscles {
@@ -74,7 +65,7 @@ impl Muscles {
         let uv = reading.ok().map(uv_of_sample);
         // Above its range there is no number, but a motion that has begun goes on.
         self.read(n, uv.or_else(|| (sample > LIMITS.high).then(|| uv_of_sample(sample))), journal);
-        let differs = self.health[n].same() == 0;
+        let differs = self.health[n].same == 0;
         self.confirmed[n] = self.emg.is_raised(n) && (self.confirmed[n] || (was_raised && differs));
         uv
     }
@@ -98,7 +89,7 @@ impl Muscles {
         if n == 1 && self.lesson.is_some() {
             self.learn(journal);
         }
-        let lost = self.health[n].lost().or_else(|| reason_of(self.emg.quality(n)));
+        let lost = self.health[n].lost.or_else(|| reason_of(self.emg.quality(n)));
         if lost != self.lost[n] {
             self.tell(n, lost, journal);
         }
@@ -211,8 +202,7 @@ impl Muscles {
         }
     }
 
-    /// A spectrum of one electrode, or the end of a calibration. Call it once a slow frame, always after the
-    /// same tick. True if there is a new calibration.
+    /// A spectrum of one electrode, or the end of a calibration; true if there is a new one. Once a slow frame.
     #[inline(never)]
     pub fn think(&mut self, journal: &mut Journal) -> bool {
         if let Some(lesson) = &mut self.lesson {

@@ -1,5 +1,5 @@
-//! Control after too many restarts in a row ([`restart`](crate::restart)): a press of the button opens the
-//! hand. Muscles and line need the converter, DMA and telemetry, any of which may be what failed.
+//! Control after too many restarts in a row ([`restart`](crate::restart)): a press of the button opens the hand,
+//! since converter, DMA or telemetry may be what failed.
 
 use tenax_hal_shim::channel::{FRAME_HZ, frames};
 use tenax_hal_shim::motor::{Duty, MotorDrive};
@@ -8,7 +8,6 @@ use crate::arming::STEP_FRAMES;
 use crate::button::{Button, Press};
 
 pub const STEP_US: u32 = STEP_FRAMES * 1_000_000 / FRAME_HZ;
-/// Longest opening of a press, 4 s: all of the range at this duty.
 const OPENS_STEPS: u32 = frames(4_000) / STEP_FRAMES;
 const SLOWLY: Duty = Duty::per_mille(300);
 
@@ -36,7 +35,6 @@ mod tests {
     use super::*;
     use crate::config::Config;
 
-    /// Steps in which it opens, while the button is held and up for so many ms in turn, up first.
     fn opens(presses_ms: &[u32]) -> [u32; 2] {
         let mut rescue = Rescue::default();
         let (mut opened, mut other) = (0, 0);

@@ -1,12 +1,10 @@
-//! Cause of a start from the chip's reset flags and a mark in RAM, and whether the hand has restarted too
-//! often. Flags stay until a start clears them and may add up (RM0383, section 6.3.20): the most severe one
-//! is reported.
+//! Cause of a start from the chip's reset flags and a mark in RAM. Flags stay until a start clears them and
+//! may add up (RM0383, section 6.3.20): the most severe one is reported.
 
 use tenax_hal_shim::wire::ResetCause;
 use tenax_hal_shim::words::Fault;
 
-/// Restarts in a row after which control still starts; the next one leaves the motor off. A hand that hangs
-/// whenever it begins to close would close a little further each time.
+/// Restarts in a row after which control still starts; the next one leaves the motor off.
 pub const RESTARTS_MAX: u32 = 5;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -33,9 +31,8 @@ pub struct Start {
     pub stay_off: bool,
 }
 
-/// `restarts`: kept count of restarts in a row. One counts if the hand caused it: a panic, a hang, or a motor
-/// that pulls the supply down. A lost crystal neither counts nor clears the count: the chip continues on its
-/// own oscillator.
+/// `restarts`: kept count of restarts in a row, of panics, hangs and brown-outs. A lost crystal neither counts
+/// nor clears the count.
 pub fn judge(flags: Flags, mark: Option<Mark>, restarts: u32) -> Start {
     let mark = mark.filter(|_| flags.software);
     let (cause, after) = match (flags, mark) {

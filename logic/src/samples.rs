@@ -3,12 +3,11 @@
 use tenax_hal_shim::channel::{CHANNELS, COUNT, Input, PVDF_COUNT, SWITCH_INPUTS};
 use tenax_hal_shim::frame::Frame;
 
-/// Kept as they come; putting them in order is left to the rare reader.
 #[derive(Clone, Debug, Default)]
 pub struct LastSamples {
     pvdf: [u16; PVDF_COUNT],
     switch_a: [u16; SWITCH_INPUTS as usize],
-    switch_b: [u16; SWITCH_INPUTS as usize],
+    pub switch_b: [u16; SWITCH_INPUTS as usize],
 }
 
 impl LastSamples {
@@ -20,11 +19,6 @@ impl LastSamples {
         self.pvdf = frame.pvdf;
         self.switch_a[select] = frame.switch_a;
         self.switch_b[select] = frame.switch_b;
-    }
-
-    /// 14-bit samples; 0 of an input without a sample yet.
-    pub const fn switch_b(&self) -> &[u16; SWITCH_INPUTS as usize] {
-        &self.switch_b
     }
 
     /// Last 14-bit samples in the order of [`CHANNELS`]; 0 for a channel without a sample yet.

@@ -4,8 +4,8 @@ mod force;
 mod select_lines;
 
 use tenax_hal_shim::channel::{
-    ARRAY, CHANNELS, COUNT, FSR, FSR_COUNT, HEAD, MYO_EXTENSOR, MYO_FLEXOR, OPENING, PVDF, PVDF_COUNT, Role,
-    SAMPLE_MAX, SLOW_HZ, STRAIN,
+    ARRAY, CHANNELS, COUNT, FRAMES_PER_SLOW_FRAME, FSR, FSR_COUNT, HEAD, MYO_EXTENSOR, MYO_FLEXOR, OPENING,
+    PVDF, PVDF_COUNT, Role, SAMPLE_MAX, SLOW_HZ, STRAIN, frames,
 };
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::front_end::FSR_REST_MV;
@@ -33,23 +33,16 @@ use crate::strain::Gauges;
 use crate::vibration::quality::PvdfQuality;
 use crate::vibration::sliding::Hand;
 use crate::vibration::{Trust, Vibration, VibrationDetector};
-use tenax_hal_shim::channel::frames;
 
-/// Time for filters and switches to settle after the start.
 const WARM_UP_FRAMES: u32 = frames(200);
-/// Frames lost in a row after which the switched sensors' last readings are stale: one slow frame.
-const STALE_FRAMES: u32 = tenax_hal_shim::channel::FRAMES_PER_SLOW_FRAME as u32;
-/// Readings that a quadrant may miss by lost frames. A tick that is always late loses the same slots of every
-/// slow frame, and never reaches [`STALE_FRAMES`].
+const STALE_FRAMES: u32 = FRAMES_PER_SLOW_FRAME as u32;
+/// Readings that a quadrant may miss: a tick that is always late never reaches [`STALE_FRAMES`].
 const QUADRANT_MISSES: u8 = 2;
 /// Opening since the last closing after which the hand is surely open: at its slowest it has moved 2 cm.
 const OPEN_FRAMES: u32 = frames(600);
-/// Slow frames in which a surely open hand reads a load before that is reported: 4 s, several times what a
-/// zero takes to follow.
+/// Slow frames in which a surely open hand reads a load before that is reported: 4 s.
 const DOUBTED_AFTER: u16 = 4 * SLOW_HZ as u16;
-/// Least offset of a quadrant at power-up that counts as pressed, uV.
 const PRESSED_UV: i32 = 100_000;
-
 static FSR_LIMITS: Limits = Limits::of(&CHANNELS[FSR], SLOW_HZ);
 
 #[derive(Clone, Debug, Default)]
@@ -62,7 +55,6 @@ pub struct Senses {
     fsr_missed: [u8; FSR_COUNT],
     fsr_seen: bool,
     pressed: bool,
-    /// Quadrant (0 to 3) that was reported to contradict the others.
     blamed: Option<u8>,
     force_sensor: ForceSensor,
     detector: VibrationDetector,
@@ -71,23 +63,19 @@ pub struct Senses {
     head: Head,
     head_is_fitted: bool,
     frames_seen: u32,
-    /// Frames in which the hand was opened since it was last closed.
     open_frames: u32,
     still_frames: u32,
-    /// A pulse against slip, or settling after it.
     striking: bool,
     open_and_loaded: u16,
     frames_lost: u32,
     films_usable: bool,
     lost: [bool; 3],
     pub vibration: Vibration,
-    /// Of the force sensor or the photoelastic head, None while neither gives a number.
     pub forces: Option<Forces>,
     pub forces_are_new: bool,
     pub gate: Gate,
     pub motor: Motor,
     pub grip: Grip,
-    /// Load below a quarter of `loaded-mn`: the finger touches nothing.
     pub unloaded: bool,
 }
 
@@ -115,8 +103,7 @@ impl Senses {
         }
     }
 
-    /// The films give nothing, the switched channel of the slot has no reading, and the others expire after a
-    /// slow frame of lost frames.
+    /// The films give nothing; other readings expire after a slow frame of lost frames.
     pub fn lose(&mut self, config: &Config, frame: &Frame, journal: &mut Journal) {
         self.frames_lost = self.frames_lost.saturating_add(1);
         self.vibration = Vibration { masked: self.vibration.masked, ..Vibration::default() };
@@ -148,11 +135,11 @@ impl Senses {
             vibration,
             envelopes: self.envelopes(),
             vibration_known: self.hears(),
-            strain: self.gauges(),
+            strain: &self.gauges,
             forces: self.forces.as_ref(),
             forces_are_new: self.forces_are_new,
             taxels: self.taxels(),
-            head: self.head(),
+            head: &self.head,
             unloaded: self.unloaded,
             grasp: matches!(self.grip, Grip::Holds(_)),
             noisy: vibration.impact || duty_permille >= config.hebbian.loud_duty_permille,
@@ -161,8 +148,7 @@ impl Senses {
         }
     }
 
-    /// Drive of the last `frames`. `took_back`: the reflex released force. `striking`: the reflex answers
-    /// slip or lets the object settle, so the hand is loud.
+    /// Drive of the last `frames`. `took_back`: the reflex released force. `striking`: the reflex is loud.
     pub const fn driven(&mut self, drive: MotorDrive, took_back: bool, striking: bool, frames: u32) {
         self.striking = striking;
         let still = !took_back && matches!(drive, MotorDrive::Coast);
@@ -205,37 +191,27 @@ impl Senses {
         &mut self.muscles
     }
 
-    pub const fn gauges(&self) -> &Gauges {
-        &self.gauges
-    }
-
     pub const fn taxels(&self) -> &Reading {
         self.taxels.reading()
-    }
-
-    pub const fn head(&self) -> &Head {
-        &self.head
     }
 
     pub const fn hears(&self) -> bool {
         self.films_usable
     }
 
-    /// Slip can be felt, and (with a wearer) both muscles are known, or one is and the other cannot be
-    /// active.
+    /// Slip can be felt, and both muscles are known, or one is and the other cannot be active.
     pub fn ready(&self, config: &Config) -> bool {
         self.feels() && (config.no_wearer || self.gate.is_half_certain(&config.gate))
     }
 
-    /// Like [`ready`](Self::ready), with both muscles known: for behaviours, which do more than close a
-    /// little.
+    /// Like [`ready`](Self::ready), with both muscles known: for behaviours.
     pub fn all_ready(&self, config: &Config) -> bool {
         self.feels() && (config.no_wearer || self.gate.is_certain(&config.gate))
     }
 
     const fn feels(&self) -> bool {
         self.frames_seen >= WARM_UP_FRAMES
-            && (self.films_usable || self.forces.is_some() || self.head.is_usable())
+            && (self.films_usable || self.forces.is_some() || self.head.is_usable)
     }
 
     fn weigh(&mut self, config: &Config) {
@@ -283,14 +259,13 @@ impl Senses {
         if !self.muscles().has_window() {
             self.blame(config, journal);
         }
-        self.select_lines.look(samples.switch_b());
+        self.select_lines.look(&samples.switch_b);
         self.films.slow(|film, change| report(journal, PVDF + film, Some(change)));
         let forces = self.forces.filter(|_| matches!(self.grip, Grip::Holds(_)));
         self.detector.slow(&Hand { forces, wearer: self.gate.is_active(), striking: self.striking });
     }
 
-    /// The films get a healthy silent film in the head's place: mid-range with one count of dither, so that
-    /// it does not look frozen. Compiled apart, so that twelve films cost nothing more.
+    /// The films get a healthy silent film in the head's place. Compiled apart: twelve films cost nothing more.
     #[cold]
     #[inline(never)]
     fn condition_head(&mut self, config: &Config, frame: &Frame, journal: &mut Journal) {
@@ -387,7 +362,7 @@ impl Senses {
             return;
         }
         let now = [
-            (Capability::Vibration, !self.films_usable && !self.head.is_usable()),
+            (Capability::Vibration, !self.films_usable && !self.head.is_usable),
             (Capability::Force, self.forces.is_none()),
             (Capability::WearerIntent, !self.gate.is_known()),
         ];

@@ -1,13 +1,10 @@
-//! Replay guard: refuses a command that was recorded and is sent again. A peer gives back a number that the
-//! board offers once; then the numbers of its frames only rise, by at most [`WINDOW`], and the session ends
-//! before they come round. This is no authentication: [`arming`](crate::arming) protects against other
-//! writers. A trusted line needs no session, but keeps the window.
+//! Replay guard: refuses a recorded command. A peer gives back a number that the board offers once; then the
+//! numbers of its frames only rise, by at most [`WINDOW`], and the session ends before they come round.
+//! [`arming`](crate::arming) protects against other writers. A trusted line keeps only the window.
 
 use tenax_hal_shim::wire::Refusal;
 
-/// Largest step from the last frame's number to the next: the line may lose frames.
 pub const WINDOW: u16 = 1_024;
-/// Numbers of a session before it ends, so that no recorded frame lies in its window again.
 const NUMBERS_MAX: u16 = u16::MAX - 2 * WINDOW;
 
 #[derive(Clone, Debug, Default)]
@@ -20,7 +17,6 @@ pub struct Session {
 }
 
 impl Session {
-    /// `noise`: checksum of a slow frame's samples.
     pub fn stir(&mut self, noise: u32) {
         self.pool = mixed(self.pool.rotate_left(5) ^ noise);
     }
@@ -32,7 +28,6 @@ impl Session {
         nonce
     }
 
-    /// Fails if the number was never offered, or was already used.
     pub fn open(&mut self, nonce: u32, sequence: u16) -> Result<(), Refusal> {
         if self.offered.take() != Some(nonce) {
             return Err(Refusal::Replayed);
@@ -41,7 +36,6 @@ impl Session {
         Ok(())
     }
 
-    /// Fails without a session, or if the frame's number has been seen or is too far ahead.
     pub fn admit(&mut self, sequence: u16, trusted: bool) -> Result<(), Refusal> {
         if !trusted && !self.is_open {
             return Err(Refusal::NoSession);
@@ -49,7 +43,6 @@ impl Session {
         if self.advance(sequence) { Ok(()) } else { Err(Refusal::Replayed) }
     }
 
-    /// A frame that only reads is always answered.
     pub fn read(&mut self, sequence: u16) {
         if self.is_open {
             self.advance(sequence);
@@ -72,7 +65,6 @@ impl Session {
     }
 }
 
-/// Finalizer of MurmurHash3.
 const fn mixed(mut number: u32) -> u32 {
     number ^= number >> 16;
     number = number.wrapping_mul(0x85EB_CA6B);

@@ -1,5 +1,5 @@
-//! Settings: one row each beside its field, in the `settings.rs` of its sense. Number on the wire and in
-//! flash, name, range, default, conversion and the line of `tenax tables settings` come from it.
+//! Settings: one row each beside its field. Number on the wire and in flash, name, range, default, conversion
+//! and the line of `tenax tables settings` come from it.
 
 use core::ops::RangeInclusive;
 
@@ -51,9 +51,7 @@ pub(crate) trait Unit<Field> {
 
 /// Millivolts, kept as a sample. A 14-bit sample has more steps than there are millivolts.
 pub(crate) struct Mv;
-/// Millivolts, kept as a mean in 1/16 of a sample.
 pub(crate) struct MvQ4;
-/// Milliseconds, kept as frames.
 pub(crate) struct Ms;
 pub(crate) struct Number;
 pub(crate) struct Flag;
@@ -99,30 +97,12 @@ impl Unit<u32> for Ms {
     }
 }
 
-impl Unit<u16> for Number {
-    fn field(value: i32) -> u16 {
-        value.clamp(0, u16::MAX.into()) as u16
+impl<T: TryFrom<i32> + TryInto<i32> + Default> Unit<T> for Number {
+    fn field(value: i32) -> T {
+        value.try_into().unwrap_or_default()
     }
-    fn value(field: u16) -> i32 {
-        field.into()
-    }
-}
-
-impl Unit<u32> for Number {
-    fn field(value: i32) -> u32 {
-        value.unsigned_abs()
-    }
-    fn value(field: u32) -> i32 {
-        field as i32
-    }
-}
-
-impl Unit<i32> for Number {
-    fn field(value: i32) -> i32 {
-        value
-    }
-    fn value(field: i32) -> i32 {
-        field
+    fn value(field: T) -> i32 {
+        field.try_into().unwrap_or_default()
     }
 }
 

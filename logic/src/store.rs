@@ -1,21 +1,13 @@
 //! Storage through power cuts: a log of records in two sectors of flash; the newest whole one of each kind
-//! counts.
-//!
-//! Nothing is erased while the hand works, because an erase stalls the core for a second or two. [`open`]
-//! does it at boot: when a sector is half full it erases the other one and copies the records that count.
-//! After a reset it waits ([`Erase`]). A power cut at any instant leaves, of each kind, the record before or
-//! after, whole:
+//! counts. An erase stalls the core, so [`open`] makes room at boot only. A cut at any instant leaves, of each
+//! kind, the record before or after, whole:
 //! - a record counts only with its CRC and, programmed after it, its commit word;
-//! - only a record that counts is skipped by its length, so a tag that was cut hides nothing that was
-//!   appended later;
-//! - a session begins with a word of zeros: the first blank word may be half programmed, and would not read
-//!   blank the next time;
+//! - only a record that counts is skipped by its length, so a cut tag hides nothing that was appended later;
+//! - a session begins with a word of zeros, since the first blank word may be half programmed;
 //! - only the sector that holds nothing that counts is ever erased;
-//! - a copy has the sequence number of the original, and its opening words, which break the tie, are
-//!   programmed last.
+//! - a copy keeps its sequence number; the new sector's opening words break the tie, and are programmed last.
 //!
-//! Wear: of 128 KiB sectors at least half is filled between two erases, so 10 000 erases of each sector
-//! (DS10314) are 4.1 million saves of the network.
+//! Wear: 10 000 erases of a 128 KiB sector (DS10314) are 4.1 million saves of the network.
 
 pub mod keeper;
 pub mod payload;
@@ -25,6 +17,7 @@ mod sector;
 use tenax_hal_shim::flash::{FlashArea, FlashFailed, Sector};
 use tenax_hal_shim::words::Kept;
 
+use crate::checksum::CRC;
 use record::{MARK, Saving, Tag};
 use sector::{Entry, OPENING_WORDS, Survey};
 
@@ -49,7 +42,6 @@ pub enum Refused {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Erase {
     Allowed,
-    /// The hand was reset and may hold something: only the room that is left is used.
     Postponed,
 }
 
@@ -57,7 +49,6 @@ pub enum Erase {
 pub struct Found {
     newest: [Option<Entry>; Kept::ALL.len()],
     damaged: [bool; Kept::ALL.len()],
-    /// Erases of a sector to make room, less one: each sector has had half of it.
     pub generation: u32,
 }
 
@@ -74,8 +65,8 @@ impl Found {
     }
 }
 
-/// Finds the records that count and makes room. Call it at boot, before anything moves. If the flash fails,
-/// nothing more is saved, but the records that were found stay valid.
+/// Finds the records that count and makes room, before anything moves. If the flash fails, nothing more is
+/// saved.
 pub fn open(area: &mut impl FlashArea, erase: Erase) -> (Log, Found) {
     let [a, b] = Sector::BOTH.map(|sector| Survey::of(area, sector));
     let (active, stale) = if b.rank() > a.rank() { (b, a) } else { (a, b) };
@@ -103,8 +94,7 @@ pub fn open(area: &mut impl FlashArea, erase: Erase) -> (Log, Found) {
 }
 
 impl Log {
-    /// Words are programmed one by one by [`Saving::step`]. The place is taken from now on, whether the
-    /// record is finished or not.
+    /// Words are programmed one by one by [`Saving::step`]; the place is taken from now on.
     pub fn begin<'a>(&mut self, kept: Kept, payload: &'a [u8]) -> Result<Saving<'a>, Refused> {
         if self.failed {
             return Err(Refused::Failed);
@@ -117,8 +107,16 @@ impl Log {
         if after > self.limit {
             return Err(Refused::Full);
         }
-        let mark = (!self.marked).then_some(self.end);
-        let saving = Saving::new(self.sector, at, tag, self.next_sequence, words, mark);
+        let saving = Saving {
+            sector: self.sector,
+            at,
+            tag,
+            sequence: self.next_sequence,
+            payload: words,
+            digest: CRC.digest(),
+            step: 0,
+            mark: (!self.marked).then_some(self.end),
+        };
         self.marked = true;
         self.end = after;
         self.next_sequence = self.next_sequence.saturating_add(1);

@@ -1,6 +1,5 @@
-//! Strain gauges: reading less zero is load. A foil gauge in silicone is off by as much as a light grasp and
-//! drifts by some mV a minute, so its zero follows the readings while the finger is unloaded, and is held in
-//! a grasp.
+//! Strain gauges: reading less zero is load. The zero follows the readings while the finger is unloaded, since
+//! a foil gauge drifts by some mV a minute, and is held in a grasp.
 
 use tenax_hal_shim::channel::{CHANNELS, SLOW_HZ, STRAIN, STRAIN_COUNT, sample_from_mv};
 use tenax_hal_shim::words::Reason;
@@ -8,9 +7,7 @@ use tenax_hal_shim::words::Reason;
 use crate::health::{Change, Limits, SensorHealth};
 
 const Q: u32 = 4;
-/// Readings over which the zero follows, log2: 0.8 s.
 const FOLLOW_SHIFT: u32 = 6;
-
 static LIMITS: Limits = Limits::of(&CHANNELS[STRAIN], SLOW_HZ);
 const REST: i32 = (sample_from_mv(CHANNELS[STRAIN].rest_mv) as i32) << (Q + FOLLOW_SHIFT);
 
@@ -32,7 +29,6 @@ impl Default for Gauges {
 }
 
 impl Gauges {
-    /// 14-bit reading of gauge 0 to 11. `unloaded`: the finger is known to touch nothing.
     pub fn read(&mut self, gauge: usize, sample: u16, unloaded: bool) -> Option<Change> {
         let gauge = self.0.get_mut(gauge)?;
         let (reading, change) = gauge.health.read(&LIMITS, sample);
@@ -40,7 +36,6 @@ impl Gauges {
         change
     }
 
-    /// The caller makes sure that nothing is held.
     pub fn zero(&mut self) {
         for gauge in &mut self.0 {
             gauge.zero += gauge.load << FOLLOW_SHIFT;
@@ -48,7 +43,6 @@ impl Gauges {
         }
     }
 
-    /// 1/16 of a sample; None for a gauge above 11.
     pub fn load(&self, gauge: usize) -> Option<i32> {
         self.0.get(gauge).map(|gauge| gauge.load)
     }

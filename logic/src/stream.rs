@@ -1,30 +1,25 @@
-//! Messages on request ([`Down::Stream`](tenax_hal_shim::wire::Down::Stream)): samples of every frame, and
-//! sensor readings. No decision depends on it.
+//! Messages on request ([`Down::Stream`](tenax_hal_shim::wire::Down::Stream)); no decision depends on them.
 
 use tenax_hal_shim::channel::{FRAME_HZ, FRAMES_PER_SLOW_FRAME, SWITCH_INPUTS};
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::wire::{FRAMES_PER_RAW, Raw};
 
 const _: () = assert!((FRAMES_PER_SLOW_FRAME as usize).is_multiple_of(FRAMES_PER_RAW));
-
 const EVER: u32 = u32::MAX;
-
 pub const SENSES_SLOT: u8 = 2;
 
 #[derive(Clone, Debug, Default)]
 pub struct Stream {
     next: u32,
-    raw: bool,
+    pub raw: bool,
     senses: bool,
     left: u32,
     gathered: Raw,
-    /// Sent in the tick after its last frame: that one may have ended a slow frame, and two long messages in
-    /// one tick last into the next.
+    /// Sent in the tick after its last frame: two long messages do not fit in one.
     whole: Raw,
     is_whole: bool,
-    raw_is_ready: bool,
-    senses_are_due: bool,
-    /// The first frames of a message went by before the request.
+    pub raw_is_ready: bool,
+    pub senses_are_due: bool,
     is_torn: bool,
 }
 
@@ -34,7 +29,6 @@ impl Stream {
         self.left = EVER;
     }
 
-    /// `hold_s` 0 ends it.
     pub fn ask(&mut self, raw: bool, senses: bool, hold_s: u16) {
         self.is_torn |= raw && !self.raw && !(self.next as usize).is_multiple_of(FRAMES_PER_RAW);
         self.left = u32::from(hold_s) * FRAME_HZ;
@@ -71,24 +65,8 @@ impl Stream {
         self.next
     }
 
-    pub const fn is_raw(&self) -> bool {
-        self.raw
-    }
-
-    pub const fn has_raw(&self) -> bool {
-        self.raw_is_ready
-    }
-
     pub fn take_raw(&mut self) -> Option<Raw> {
         core::mem::take(&mut self.raw_is_ready).then_some(self.whole)
-    }
-
-    pub const fn wants_senses(&self) -> bool {
-        self.senses_are_due
-    }
-
-    pub const fn gave_senses(&mut self) {
-        self.senses_are_due = false;
     }
 }
 
@@ -113,7 +91,7 @@ mod tests {
         assert_eq!(firsts(&mut stream, 7..26), [10, 15, 20]);
         stream.ask(false, true, 1);
         assert_eq!(firsts(&mut stream, 26..53), []);
-        assert!(stream.wants_senses(), "slot 2");
+        assert!(stream.senses_are_due, "slot 2");
     }
 
     #[test]

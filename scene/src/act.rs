@@ -21,7 +21,6 @@ pub enum Act {
     Touch(usize),
 }
 
-/// Letters and what they do, for a person at the bench.
 pub const KEYS: [(&str, &str, Act); 6] = [
     ("g", "grip and lift", Act::Grip),
     ("d", "put down", Act::PutDown),
@@ -130,25 +129,4 @@ fn rings(since_s: f64) -> f64 {
     }
     let tap_s = since_s % TAPS_EACH_S;
     libm::exp(-tap_s / TAP_S) * libm::sin(TAU * TAP_HZ * tap_s)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use tenax_hal_shim::channel::CHANNELS;
-
-    #[test]
-    fn keys_weights_and_prompts_are_read_and_nothing_else() {
-        assert_eq!("g".parse(), Ok(Act::Grip));
-        assert_eq!("weight 5".parse(), Ok(Act::Weight(5.0)));
-        for (n, channel) in CHANNELS.iter().enumerate() {
-            let prompt = format!("{} {}, once more (PA0)", Role::of(n, false).verb(), channel.name);
-            assert_eq!(prompt.parse(), Ok(Act::Touch(n)), "{prompt}");
-        }
-        for other in
-            ["", "g g", "weight", "weight 500", "press pvdf_1", "tap", "   pvdf_1 412 mV", "FAIL tap pvdf_1"]
-        {
-            assert_eq!(other.parse::<Act>(), Err(()), "{other}");
-        }
-    }
 }

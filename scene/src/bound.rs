@@ -25,7 +25,6 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// None where there is nothing to grasp.
     pub fn of(scene: &SceneFile) -> Option<Self> {
         let needed_n = needed_n(scene)?;
         let gripper = &scene.gripper;

@@ -52,10 +52,7 @@ mod tests {
             causal.see(Known { needed_n, stops_n, wearer_active });
             causal.target_n()
         };
-        assert!((0..40).all(|_| target_n(5.0, None, false) == 0.0));
-        assert_eq!(target_n(1.0, Some(2.0), false), 6.0);
-        assert_eq!(target_n(1.0, None, true), 0.0);
-        (0..37).for_each(|_| _ = target_n(0.0, None, false));
-        assert_eq!([target_n(0.0, None, false), target_n(0.0, None, false)], [6.0, 2.4]);
+        assert!((0..40).all(|_| target_n(5.0, Some(7.0), false) == 0.0));
+        assert_eq!([target_n(1.0, None, true), target_n(1.0, None, false)], [0.0, 1.2 * 7.0]);
     }
 }

@@ -29,7 +29,7 @@ impl Script {
         }
         sent.sort_by(|(a, _), (b, _)| a.total_cmp(b));
         let presses = commands.iter().filter(|command| *command.kind.get_ref() == CommandKind::Consent);
-        Self { sent: sent.into(), pressed_at_s: presses.map(|press| press.at_s.get_ref().get()).collect() }
+        Self { sent: sent.into(), pressed_at_s: presses.map(|press| press.at_s.get()).collect() }
     }
 
     pub(crate) fn button(&self, t_s: f64) -> bool {
@@ -43,7 +43,7 @@ impl Script {
 }
 
 fn expand(command: &Command) -> Vec<(f64, Down)> {
-    let at_s = command.at_s.get_ref().get();
+    let at_s = command.at_s.get();
     let kind = *command.kind.get_ref();
     let duty = Duty::per_mille(command.duty_permille.as_ref().map_or(0, |duty| *duty.get_ref()));
     let once = |down| vec![(at_s, down)];
@@ -82,20 +82,12 @@ fn held(at_s: f64, command: &Command, drive: MotorDrive) -> Vec<(f64, Down)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::SceneFile;
+    use crate::file::plain;
     use tenax_logic::setting::SettingId;
-
-    fn scene(line: &str, commands: &str) -> SceneFile {
-        let text = format!(
-            "name = 'n'\ntitle = 't'\nfrom = 'assumed'\nduration_s = 2\nslip_floor_mm_s = 1\n{line}[robot]\n\
-             [contact]\nmu_s = 0.5\nmu_d = 0.4\npad_length_mm = 18\npitch_mm = 1\n{commands}"
-        );
-        SceneFile::parse(&text, "t.toml").unwrap()
-    }
 
     #[test]
     fn a_held_key_is_repeated_and_let_go_in_time() {
-        let scene = scene(
+        let scene = plain(
             "",
             "[[command]]\nat_s = 1\nkind = 'close'\nduty_permille = 300\nfor_s = 0.32\n\
              [[command]]\nat_s = 0.5\nkind = 'set-s2-permille'\nvalue = 400\n",
@@ -114,7 +106,7 @@ mod tests {
     #[test]
     fn a_board_that_trusts_nobody_is_asked_for_a_session_and_somebody_presses_its_button() {
         let commands = "[[command]]\nat_s = 1\nkind = 'consent'\n[[command]]\nat_s = 1.5\nkind = 'zero'\n";
-        let scene = scene("line_trusted = false\n", commands);
+        let scene = plain("line_trusted = false\n", commands);
         let mut script = Script::new(&scene.command, scene.trusts_line());
         assert_eq!(script.take(0.2), [Down::Hello]);
         assert_eq!(script.take(1.4), []);

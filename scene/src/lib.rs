@@ -21,7 +21,7 @@
 //!
 //! | module | |
 //! |---|---|
-//! | [`physics`] | contact at three levels, gripper, grasped object, stroked surface, hand, wearer |
+//! | [`physics`] | contact at two levels, gripper, grasped object, stroked surface, hand, wearer |
 //! | [`sensor`] | sensors, cameras and their faults |
 //! | [`picture`] | pictures of a camera behind a clear skin |
 //! | [`act`] | acts of a person at the bench |
@@ -32,7 +32,6 @@
 
 pub mod act;
 pub mod bound;
-pub mod bounds;
 pub mod builtin;
 mod causal;
 mod commands;
@@ -41,7 +40,6 @@ pub mod file;
 pub mod physics;
 pub mod picture;
 pub mod plant;
-mod pole;
 mod random;
 mod schedule;
 pub mod sensor;

@@ -1,7 +1,6 @@
 //! Pictures of a camera behind a clear skin: markers that the contact moves, an object, a background, with the faults of a cheap
 //! camera: fisheye, blur, noise, rolling shutter, changing light (FingerVision 2017). The same seed gives the same pictures.
 
-mod lens;
 pub mod story;
 mod texture;
 
@@ -9,12 +8,9 @@ use self::story::{State, Story};
 use self::texture::Texture;
 use crate::random::{Noise, Source};
 
-pub use self::lens::Lens;
-
 pub const WIDTH: usize = 320;
 pub const HEIGHT: usize = 240;
 pub const PIXELS: usize = WIDTH * HEIGHT;
-/// Samples of noise that pictures take theirs from.
 const NOISE: usize = 1 << 18;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,7 +20,6 @@ pub struct Options {
     pub fisheye: bool,
 }
 
-/// Difficulties of a session.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stress {
     /// Brightness of the object over that of the wall, levels; darker where there is no room.
@@ -271,38 +266,30 @@ impl Session {
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+/// A fisheye lens: equidistant, r = f theta.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lens {
+    pub focal_px: f64,
+    pub middle: (f64, f64),
+}
 
-    fn options(seed: u64) -> Options {
-        Options { seed, rate_hz: 30.0, fisheye: true }
+impl Lens {
+    pub fn seen(&self, (x, y): (f64, f64)) -> (f64, f64) {
+        self.scaled((x, y), |r| self.focal_px * libm::atan(r / self.focal_px))
     }
 
-    #[test]
-    fn a_marker_is_dark_where_the_truth_says() {
-        let mut session = Session::new(options(3));
-        let mut bytes = vec![0; 3 * PIXELS];
-        for _ in 0..4 {
-            let truth = session.picture(&mut bytes).unwrap();
-            assert!(truth.markers.len() >= 15, "{} markers", truth.markers.len());
-            for ((x, y), rest) in &truth.markers {
-                assert_eq!((*x, *y), *rest, "nothing touches the skin yet");
-                assert!(bytes[y.round() as usize * WIDTH + x.round() as usize] < 70);
-            }
+    pub fn flat(&self, (x, y): (f64, f64)) -> (f64, f64) {
+        // Nothing is seen beyond 80 degrees.
+        self.scaled((x, y), |r| self.focal_px * libm::tan((r / self.focal_px).min(1.4)))
+    }
+
+    fn scaled(&self, (x, y): (f64, f64), radius: impl Fn(f64) -> f64) -> (f64, f64) {
+        let (dx, dy) = (x - self.middle.0, y - self.middle.1);
+        let r = libm::hypot(dx, dy);
+        if r < 1e-9 || !self.focal_px.is_finite() {
+            return (x, y);
         }
-    }
-
-    #[test]
-    fn a_story_has_an_end_and_all_that_it_tells() {
-        let mut session = Session::new(Options { rate_hz: 5.0, ..options(4) });
-        let mut bytes = vec![0; 3 * PIXELS];
-        let truths: Vec<Truth> = std::iter::from_fn(|| session.picture(&mut bytes)).collect();
-        assert_eq!(truths.len(), 50);
-        assert!(
-            truths.iter().any(|truth| truth.slides)
-                && truths.iter().any(|truth| truth.gripped && !truth.slides)
-        );
-        assert!(!truths[0].in_view && truths[20].in_view && !truths[49].in_view);
+        let scale = radius(r) / r;
+        (self.middle.0 + dx * scale, self.middle.1 + dy * scale)
     }
 }

@@ -62,12 +62,10 @@ pub trait Plant: Send {
         (Frame::from_scans(sequence, &scans), commands)
     }
 
-    /// Commands that come down the serial line at this instant.
     fn commands(&mut self) -> Vec<Down> {
         self.within_mut().map_or_else(Vec::new, Plant::commands)
     }
 
-    /// Raw bytes that come down the serial line at this instant.
     fn line_bytes(&mut self) -> Vec<u8> {
         self.within_mut().map_or_else(Vec::new, Plant::line_bytes)
     }
@@ -96,7 +94,6 @@ pub trait Plant: Send {
         self.within().is_some_and(Plant::streams_at_start)
     }
 
-    /// Records that the flash has kept from before.
     fn kept(&self) -> Vec<(Kept, Vec<u8>)> {
         self.within().map_or_else(Vec::new, Plant::kept)
     }
@@ -127,17 +124,14 @@ pub trait Plant: Send {
         self.within()?.closing_to(target_n)
     }
 
-    /// True while the object moves relative to the finger.
     fn slipping(&self) -> bool {
         self.within().is_some_and(Plant::slipping)
     }
 
-    /// Wearer to whom the board was calibrated before the start.
     fn calibrated(&self) -> Option<Calibrated> {
         self.within()?.calibrated()
     }
 
-    /// Length, s. The innermost plant says it.
     fn duration_s(&self) -> f64 {
         self.within().map_or(0.0, Plant::duration_s)
     }
@@ -146,49 +140,6 @@ pub trait Plant: Send {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    struct Outspoken(Pins);
-
-    impl Plant for Outspoken {
-        fn scan(&mut self, _drive: MotorDrive) -> &Pins {
-            &self.0
-        }
-
-        fn commands(&mut self) -> Vec<Down> {
-            vec![Down::Ping]
-        }
-
-        fn button(&self) -> bool {
-            true
-        }
-
-        fn calibrated(&self) -> Option<Calibrated> {
-            Some(Calibrated::Words([3; 10]))
-        }
-    }
-
-    struct Around<P>(P);
-
-    impl<P: Plant> Plant for Around<P> {
-        fn within(&self) -> Option<&dyn Plant> {
-            Some(&self.0)
-        }
-
-        fn within_mut(&mut self) -> Option<&mut dyn Plant> {
-            Some(&mut self.0)
-        }
-
-        fn scan(&mut self, drive: MotorDrive) -> &Pins {
-            self.0.scan(drive)
-        }
-    }
-
-    #[test]
-    fn a_plant_around_another_answers_as_the_innermost() {
-        let mut around = Around(Around(Outspoken(Pins::default())));
-        assert!(around.button() && around.calibrated().is_some() && !around.trusts_line());
-        assert_eq!(around.frame(0, MotorDrive::Coast).1, [Down::Ping; 4]);
-    }
 
     #[test]
     fn codes_are_rounded_down_and_clipped() {

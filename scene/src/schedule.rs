@@ -1,7 +1,6 @@
 //! Time, and things that happen for a while.
 
 use tenax_hal_shim::channel::{FRAME_HZ, SCAN_HZ};
-use toml::Spanned;
 
 use crate::file::quantity::{Duration, Instant};
 
@@ -16,8 +15,8 @@ pub(crate) struct Span {
 }
 
 impl Span {
-    pub(crate) fn of(at_s: &Spanned<Instant>, for_s: Duration) -> Self {
-        Self::new(at_s.get_ref().get(), for_s.get())
+    pub(crate) fn of(at_s: Instant, for_s: Duration) -> Self {
+        Self::new(at_s.get(), for_s.get())
     }
 
     pub(crate) const fn new(begin_s: f64, for_s: f64) -> Self {
@@ -39,4 +38,39 @@ impl Span {
 /// From 0 to 1 without a jerk at either end: 3 p^2 - 2 p^3.
 pub(crate) fn smooth(progress: f64) -> f64 {
     progress * progress * (3.0 - 2.0 * progress)
+}
+
+/// First-order low-pass, stepped exactly for an input that is constant during a step. What it takes away from its input
+/// is the high-pass of the same corner.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LowPass {
+    part: f64,
+    state: f64,
+}
+
+impl LowPass {
+    pub(crate) fn with_tau_s(tau_s: f64) -> Self {
+        Self::new(tau_s, STEP_S)
+    }
+
+    pub(crate) fn with_corner_hz(corner_hz: f64) -> Self {
+        Self::with_tau_s(1.0 / (std::f64::consts::TAU * corner_hz))
+    }
+
+    pub(crate) fn of_frames(tau_s: f64) -> Self {
+        Self::new(tau_s, FRAME_S)
+    }
+
+    fn new(tau_s: f64, step_s: f64) -> Self {
+        Self { part: -libm::expm1(-step_s / tau_s), state: 0.0 }
+    }
+
+    pub(crate) fn step(&mut self, input: f64) -> f64 {
+        self.state += self.part * (input - self.state);
+        self.state
+    }
+
+    pub(crate) fn noise_gain(&self) -> f64 {
+        (self.part / (2.0 - self.part)).sqrt()
+    }
 }

@@ -1,15 +1,11 @@
 //! The exact log of a world, which a report compares the fingertip with. None of it reaches a pin.
 
-mod record;
-
 use tenax_hal_shim::channel::{CHANNELS, COUNT, MYO_EXTENSOR, MYO_FLEXOR};
 
 use crate::file::sections::Intent;
 use crate::physics::{TOUCH_N, Touch};
 use crate::schedule::STEP_S;
 use crate::sensor::camera::Seen;
-
-pub use record::{Activity, MicroRun, Phase, Row, Slip};
 
 pub const TRACE_HZ: u32 = 200;
 pub const MYO_ON_MV: f64 = 160.0;
@@ -47,6 +43,54 @@ pub struct Truth {
     let_go: bool,
     slide: Option<Slide>,
     micro: Option<Micro>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Slip {
+    pub micro_onset_s: f64,
+    pub macro_onset_s: f64,
+    pub end_s: Option<f64>,
+    pub distance_mm: f64,
+    pub meant: bool,
+}
+
+/// Micro slips with no pause longer than [`MICRO_PAUSE_S`] between two of them, which led to no slip.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MicroRun {
+    pub begin_s: f64,
+    pub end_s: f64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Phase {
+    pub intent: Option<Intent>,
+    pub begin_s: f64,
+    pub end_s: Option<f64>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Activity {
+    /// Index in [`CHANNELS`].
+    pub channel: usize,
+    pub on_s: f64,
+    /// When it fell under [`MYO_OFF_MV`], s. None while it is over.
+    pub off_s: Option<f64>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Row {
+    pub t_s: f64,
+    pub grip_n: f64,
+    pub shear_n: f64,
+    pub mass_kg: f64,
+    pub position_mm: f64,
+    pub slide_mm_s: f64,
+    pub sticks: bool,
+    pub stuck_part: f64,
+    pub pitch_rad: f64,
+    /// The least grip force of each finger that would hold at this instant, N; 0 while the hand does not carry.
+    pub needed_n: f64,
+    pub margin_n: f64,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -28,7 +28,7 @@ use crate::sensor::camera::{Eye, Seen};
 use crate::sensor::converter::Converter;
 use crate::sensor::fault::Faults;
 use crate::sensor::fsr::Quadrants;
-use crate::sensor::hand;
+use crate::sensor::hand_v;
 use crate::sensor::myo::Envelopes;
 use crate::sensor::photoelastic::Head;
 use crate::sensor::pvdf::Films;
@@ -85,15 +85,14 @@ impl World {
     /// The scene at its beginning, with one seed for the fingertip's making and one for the noise.
     pub fn seeded(scene: &SceneFile, seeds: Seeds) -> Self {
         let seed = seeds.noise;
-        let task = match &scene.object {
-            Some(object) => Task::Grasp {
+        let task = if let Some(robot) = &scene.robot {
+            Task::Stroke(Box::new(Stroke::new(scene, robot.get_ref())))
+        } else {
+            let object = scene.object.as_ref().expect("a scene has [object] or [robot]");
+            Task::Grasp {
                 grasp: Box::new(Grasp::new(scene, object.get_ref())),
                 hand: Hand::new(&scene.moves, &scene.swing),
                 arm: scene.arm,
-            },
-            None => {
-                let robot = scene.robot.as_ref().map(|robot| robot.get_ref().clone()).unwrap_or_default();
-                Task::Stroke(Box::new(Stroke::new(scene, &robot)))
             }
         };
         Self {
@@ -103,7 +102,7 @@ impl World {
             wearer: Wearer::new(&scene.muscle),
             gripper: Gripper::new(&scene.gripper),
             vibrator: scene.vibrator.as_ref().map(Vibrator::new),
-            jams: scene.jam.iter().map(|jam| Span::of(&jam.at_s, jam.for_s)).collect(),
+            jams: scene.jam.iter().map(|jam| Span::of(jam.at_s, jam.for_s)).collect(),
             task,
             touch: Touch::default(),
             films: Films::new(&scene.pvdf, (&scene.knock, &scene.hum), scene.contact.pitch_mm.get(), seeds),
@@ -180,7 +179,7 @@ impl World {
         let shakes = Shakes { t_s, released_n, motor_speed: self.gripper.speed_part() };
         pins_v[ARRAY..MYO_FLEXOR].copy_from_slice(&self.elements.step(&self.touch, shakes));
         pins_v[MYO_FLEXOR..OPENING].copy_from_slice(&self.envelopes.step(t_s, effort));
-        pins_v[OPENING..COUNT].copy_from_slice(&hand::pins_v(&self.gripper));
+        pins_v[OPENING..COUNT].copy_from_slice(&hand_v(&self.gripper));
         self.truth.wearer(t_s, effort.intent, pins_v);
     }
 
@@ -228,7 +227,6 @@ impl World {
             }
             Task::Stroke(stroke) => {
                 self.touch = stroke.step(t_s);
-                // The surface lies still; the probe is the hand.
                 let probe_mm = stroke.probe_m * 1e3;
                 State { carried: true, position_mm: probe_mm, hand_mm: probe_mm, ..State::default() }
             }

@@ -61,9 +61,7 @@ value = 300\n |  | 22 | needs value
 [[muscle]] | [robot]\n[[muscle]] | 24 | [robot], [object]
 [[muscle]] | [gripper]\nopening_mm = 120\n[[muscle]] | 25 | opening_mm = 120, range_mm = 100
 [[muscle]] | [[electrode_lift]]\nat_s = 1\nfor_s = 1\nchannel = "pvdf_1"\npickup_mv = 1\n[[muscle]] | 27 | pvdf_1, myo_flexor
-pitch_mm = 1 | pitch_mm = 1\nlevel = "l3" | 11 | l3, l0, l1, l2
-pitch_mm = 1 | pitch_mm = 1\nskin_ms = 3 | 11 | skin_ms, l1
-pitch_mm = 1 | pitch_mm = 1\nlevel = "l1"\nstribeck_mm_s = 3 | 12 | stribeck_mm_s, l2
+pitch_mm = 1 | pitch_mm = 1\nlevel = "l3" | 11 | l3, l0, l1
 pitch_mm = 1 | pitch_mm = 1\nlevel = "l1"\nskin_n_per_mm = -1 | 12 | skin_n_per_mm, 0.01..=1000
 stiffness_n_per_mm = 3 | stiffness_n_per_mm = 3\ncrush_n = nan | 15 | crush_n, NaN
 [[fault]] | [pitch]\noffset_mm = 500\nhang_mm = 1\ngyration_mm = 9\n[[fault]] | 16 | offset_mm, -100..=100

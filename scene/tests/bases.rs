@@ -3,7 +3,6 @@
 use std::borrow::Cow;
 
 use tenax_scene::SceneFile;
-use tenax_scene::builtin::find;
 
 const BASE: &str = "from = \"assumed\"
 duration_s = 10
@@ -54,17 +53,6 @@ fn a_scene_is_its_base_and_what_it_changes() {
 }
 
 #[test]
-fn every_scene_of_the_program_is_told_the_same_by_one_that_adds_nothing() {
-    for (name, text) in tenax_scene::builtin() {
-        let scene = SceneFile::parse(text, name).unwrap();
-        let title = scene.title.replace('\\', "\\\\").replace('"', "\\\"");
-        let upon = format!("name = \"{name}\"\nbase = \"{name}\"\ntitle = \"{title}\"\n");
-        let upon = SceneFile::parse(&upon, "my.toml").unwrap_or_else(|error| panic!("{error}"));
-        assert_eq!(told(&upon), told(&scene), "{name}");
-    }
-}
-
-#[test]
 fn a_mistake_is_named_in_the_file_in_which_it_stands() {
     let cases = [
         ("[contact]\nmu_s = 50\n", BASE, "my.toml:5: mu_s: 50 is outside"),
@@ -107,13 +95,6 @@ fn a_base_that_is_not_there_or_stands_on_the_scene_is_refused() {
     let own = |_: &str| Some(("my.toml".to_owned(), Cow::Borrowed("")));
     let said = SceneFile::parse_upon("base = \"my\"\n", "my.toml", &own).unwrap_err().to_string();
     assert_eq!(said, "my.toml:1: base: my.toml stands on itself");
-}
-
-#[test]
-fn a_base_may_have_one_itself() {
-    let (_, text) = find("array-noisy").unwrap();
-    let scene = SceneFile::parse(&text, "array-noisy").unwrap();
-    assert_eq!(scene.duration_s(), 24.0, "array-noisy, array-load, array-box");
 }
 
 #[test]

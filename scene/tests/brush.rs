@@ -1,4 +1,4 @@
-//! L1 against its closed forms, and what L0 gets wrong without it.
+//! L1 against its closed forms, what L0 gets wrong without it, and the slider of the photoelastic head.
 
 use std::num::NonZeroU16;
 
@@ -6,7 +6,9 @@ use proptest::prelude::*;
 use tenax_scene::physics::brush::{BrushPatch, ELEMENTS, Pad, closed_form};
 use tenax_scene::physics::contact::RigidCoulomb;
 use tenax_scene::physics::friction::Friction;
-use tenax_scene::stepping::SHIPPED_S;
+use tenax_scene::physics::stribeck::{BLOCK_N, METAL, Slider, Stribeck, StribeckSlider};
+use tenax_scene::sensor::photoelastic::HEAD_STRIP;
+use tenax_scene::stepping::{SHIPPED_S, growth_per_s};
 
 const PAD: Pad = Pad { radius_m: 0.005, stiffness_n_per_m3: 2.55e7 };
 const NORMAL_N: f64 = 2.0;
@@ -34,19 +36,6 @@ fn the_sum_of_the_rings_converges_to_the_cubic_at_second_order() {
         let scaled = error * f64::from(elements).powi(2);
         // 0.375 as N grows.
         assert!((0.30..0.40).contains(&scaled), "N = {elements}: {error}, {scaled} / N^2");
-    }
-}
-
-#[test]
-fn the_stick_radius_is_the_root_within_a_ring() {
-    let whole_m = PAD.macro_slip_m(NORMAL_N, MU);
-    let rings = f64::from(ELEMENTS.get());
-    let mut patch = BrushPatch::new(PAD, ELEMENTS);
-    for n in 1..ELEMENTS.get() {
-        patch.step(NORMAL_N, PLAIN, whole_m / rings);
-        let s = f64::from(n) / rings;
-        // Between the rings the edge is exact.
-        assert!((patch.stick_radius_part() - closed_form::stick_radius(s)).abs() < 1e-9);
     }
 }
 
@@ -95,6 +84,27 @@ fn rigid_coulomb_holds_what_a_patch_loses() {
     assert_eq!(hold(1.02 * DROPS.mu_s), (false, false));
 }
 
+#[test]
+fn the_slider_vibrates_by_itself_where_its_damping_is_less_than_friction_falls() {
+    // The sliding speed at which `c + P dmu/dv = 0`, m/s, under a friction that falls by 0.1.
+    let slider = Slider { friction: Stribeck { mu_s: METAL.mu_d + 0.1, ..METAL }, ..HEAD_STRIP };
+    let steepest = -BLOCK_N * slider.friction.slope_s_m(0.0);
+    let critical_m_s = METAL.speed_m_s * (steepest / slider.damping_ns_per_m).ln();
+    for part in [0.8, 0.95, 1.05, 1.3] {
+        let growth_per_s = growth_per_s(slider, BLOCK_N, part * critical_m_s).expect("it swings");
+        assert_eq!(growth_per_s > 0.0, part < 1.0, "{part}: {growth_per_s}");
+    }
+}
+
+#[test]
+fn a_slider_that_sticks_to_a_surface_at_rest_stays() {
+    let mut slider = StribeckSlider::new(HEAD_STRIP).with_motion(2e-5, 0.0);
+    for _ in 0..80_000 {
+        slider.step(BLOCK_N, 0.0, SHIPPED_S);
+    }
+    assert_eq!((slider.position_m(), slider.speed_m_s()), (2e-5, 0.0));
+}
+
 proptest! {
     #[test]
     fn a_patch_never_gives_more_than_was_put_into_it(
@@ -109,6 +119,24 @@ proptest! {
             prop_assert!(patch.energy_j() - before_j <= outcome.shear_n * by_m + 1e-15);
             prop_assert!(outcome.shear_n.abs() <= friction.mu_s * normal_n * (1.0 + 1e-12));
             prop_assert!(outcome.released_n >= 0.0);
+        }
+    }
+
+    #[test]
+    fn over_a_surface_at_rest_friction_only_takes(
+        mu_d in 0.05..1.0, excess in 0.0..0.5, normal_n in 0.0..20.0,
+        position_m in -1e-3..1e-3, speed_m_s in -0.1..0.1,
+    ) {
+        let friction = Stribeck { mu_s: mu_d + excess, mu_d, speed_m_s: 1e-3 };
+        let free = Slider { stiffness_n_per_m: 1e-9, damping_ns_per_m: 0.0, friction, ..HEAD_STRIP };
+        let mut slider = StribeckSlider::new(free).with_motion(position_m, speed_m_s);
+        let mut before_m_s = speed_m_s;
+        for _ in 0..50 {
+            slider.step(normal_n, 0.0, SHIPPED_S);
+            let after_m_s = slider.speed_m_s();
+            // The spring of the free slider is too weak to turn it: less than 1e-9 m/s in all.
+            prop_assert!(after_m_s.abs() <= before_m_s.abs() + 1e-9);
+            before_m_s = after_m_s;
         }
     }
 }

@@ -14,30 +14,6 @@ fn every_scene_parses_and_is_called_as_its_file() {
     assert_eq!(builtin()[0].0, "glass", "the default scene comes first");
 }
 
-/// Keys that are an instant, a duration or a name explain themselves; every other has a comment in its file.
-#[test]
-fn every_number_in_every_scene_says_where_it_is_from_at_least_once() {
-    let explains_itself =
-        "at_s for_s until_s name base without title from channel kind intent reason duration_s";
-    for (name, text) in builtin().iter().chain(builtin::parts()) {
-        let lines: Vec<&str> = text.lines().filter(|line| !line.trim_start().starts_with('#')).collect();
-        // `key = value`, or several of them in braces; or the key of a list of such lines, which has none of its own.
-        let keys = |line: &str| {
-            let code = line.split('#').next().unwrap_or_default().trim_end();
-            let words = |part: &str| part.rsplit(['{', ',']).next().unwrap_or_default().trim().to_owned();
-            let found: Vec<String> = code.split(" = ").map(words).collect();
-            let values = usize::from(code.contains(" = "));
-            let list = code.ends_with('[');
-            if list { Vec::new() } else { found[..values * (found.len() - 1)].to_vec() }
-        };
-        for key in lines.iter().flat_map(|line| keys(line)) {
-            let commented = |line: &&str| line.contains('#') && keys(line).contains(&key);
-            let explained = explains_itself.split(' ').any(|own| own == key) || lines.iter().any(commented);
-            assert!(explained, "{name}: `{key}` has no source");
-        }
-    }
-}
-
 /// Without its knocks, so that nothing else closes the fingers.
 #[test]
 fn the_glass_slips_when_it_is_wet_and_falls_unless_vibration_is_answered() {

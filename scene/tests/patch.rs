@@ -1,6 +1,6 @@
 //! L1 in the grasp: micro slip precedes macro slip, the films hear it, and the level below has neither.
 
-use crate::common::{Reflex, changed, parsed, run, truth};
+use crate::common::{Reflex, changed, run};
 use proptest::prelude::*;
 use tenax_hal_shim::channel::{PVDF_COUNT, SCANS_PER_FRAME};
 use tenax_scene::SceneFile;
@@ -56,29 +56,10 @@ fn micro_slip_precedes_macro_slip_the_films_hear_it_and_a_firmer_grip_is_needed(
     assert!((1.08..1.16).contains(&ratio), "{ratio}");
 }
 
-/// Dubey 2006, section 4: a signal that lasts as long as the slip needs friction that falls with speed.
-#[test]
-fn falling_friction_shakes_the_probe_where_constant_friction_lets_it_slide() {
-    // Vibration of the probe's speed in steady sliding at 30 mm/s on an arm with little damping, mm/s.
-    let shaking = |level: &str, key: &str| {
-        let scene = parsed(&format!(
-            "name = \"n\"\ntitle = \"t\"\nfrom = \"assumed\"\nduration_s = 3\nslip_floor_mm_s = 0.1\n[contact]\n\
-             level = \"{level}\"\nmu_s = 0.5\nmu_d = 0.4\npad_length_mm = 18\npitch_mm = 1\n{key}[robot]\n\
-             damping = 0.05\n[[press]]\nat_s = 0\nfor_s = 3\nload_n = 2\n[[sweep]]\nat_s = 0.3\nfor_s = 2.7\nspeed_mm_s = 30\n"
-        ));
-        let truth = truth(&scene, Reflex::None);
-        let late = truth.trace.iter().filter(|row| (1.8..2.6).contains(&row.t_s)).map(|row| row.slide_mm_s);
-        late.clone().fold(f64::MIN, f64::max) - late.fold(f64::MAX, f64::min)
-    };
-    let [rigid, patch, falling] =
-        [("l0", ""), ("l1", ""), ("l2", "stribeck_mm_s = 20\n")].map(|(level, key)| shaking(level, key));
-    assert!(rigid < 3.0 && patch < 3.0 && falling > 20.0, "{rigid}, {patch}, {falling} mm/s");
-}
-
 proptest! {
     #[test]
     fn friction_never_adds_energy_at_any_level(
-        which in prop::sample::select(vec!["l0", "l1", "l2"]), mu_d in 0.05..1.0, excess in 0.0..0.5,
+        which in prop::sample::select(vec!["l0", "l1"]), mu_d in 0.05..1.0, excess in 0.0..0.5,
         mass_kg in 0.001..2.0, speed_m_s in -0.5..0.5,
         loads in prop::collection::vec(0.0..30.0, 2..40),
     ) {

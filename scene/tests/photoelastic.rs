@@ -70,21 +70,3 @@ fn without_falling_friction_there_is_light_only_where_slip_begins_and_ends() {
         assert!(amplitude < 0.2 * line(&with[8_000..12_000]).0, "the control vibrates: {amplitude} mV");
     }
 }
-
-#[test]
-fn a_held_block_that_is_jerked_below_friction_gives_no_vibration() {
-    let mut head = Head::with(Layer::DUBEY, Making::MEAN, Day::FIRST, HEAD_STRIP, 1.into());
-    let pin: Vec<f64> = (0..8_000)
-        .map(|n| {
-            let t_s = f64::from(n) * SCAN_S;
-            let shear_n = 0.2 * LOAD_N * (TAU * 2.0 * t_s).sin();
-            1e3 * head.step(t_s, &Touch { normal_n: LOAD_N, shear_n, sticks: true, ..Touch::default() })
-        })
-        .collect();
-    // Light does not know the shear's sign: twice the jerk's 2 Hz and its harmonics, and nothing at the strip's frequency.
-    let (_, hz) = line(&pin);
-    assert!(hz <= 8.0, "{hz} Hz");
-    let step = |n: usize| pin[n] - pin[n - 40];
-    let high = (4_000..8_000).map(|n| (step(n) - step(n - 40)).abs()).fold(0.0, f64::max);
-    assert!(high < 10.0, "{high} mV in 5 ms");
-}

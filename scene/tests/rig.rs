@@ -43,23 +43,23 @@ fn within(value: f64, figure: f64, part: f64) -> bool {
     (value / figure - 1.0).abs() <= part
 }
 
-fn modelled() -> Onset {
+/// The model beside an onset that was recorded.
+fn assert_reproduced(recorded: &Onset) {
     let mut rows = Vec::new();
     run(&scene("rig"), Reflex::None, |world, _| {
         let touch = world.touch();
         let p = ((world.now_s() - 1.496) / 0.230).clamp(0.0, 1.0);
         rows.push((world.now_s(), 40.0 * p * p * (3.0 - 2.0 * p), touch.shear_n, touch.normal_n));
     });
-    onset(&rows)
+    let modelled = onset(&rows);
+    println!("recorded {recorded:?}\nmodelled {modelled:?}");
+    assert!(within(modelled.peak, recorded.peak, 0.05) && within(modelled.rise_s, recorded.rise_s, 0.20));
+    assert!(within(modelled.drop, recorded.drop, 0.10));
 }
 
 #[test]
 fn the_rig_s_onset_is_reproduced() {
-    let modelled = modelled();
-    println!("recorded {RECORDED:?}\nmodelled {modelled:?}");
-    assert!(within(modelled.peak, RECORDED.peak, 0.05), "{modelled:?}");
-    assert!(within(modelled.rise_s, RECORDED.rise_s, 0.20), "{modelled:?}");
-    assert!(within(modelled.drop, RECORDED.drop, 0.10), "{modelled:?}");
+    assert_reproduced(&RECORDED);
 }
 
 #[test]
@@ -89,13 +89,10 @@ fn the_figures_are_the_recording_s() {
         })
         .collect();
     let recorded = onset(&rows);
-    println!("{recorded:?}");
     assert!(within(recorded.peak, RECORDED.peak, 1e-3) && within(recorded.rise_s, RECORDED.rise_s, 5e-3));
     assert!(within(recorded.drop, RECORDED.drop, 5e-3), "{recorded:?}");
     for (now, then) in recorded.passes_s.into_iter().zip(RECORDED.passes_s) {
         assert!((now - then).abs() < 2e-4, "{recorded:?}");
     }
-    let modelled = modelled();
-    assert!(within(modelled.peak, recorded.peak, 0.05) && within(modelled.rise_s, recorded.rise_s, 0.20));
-    assert!(within(modelled.drop, recorded.drop, 0.10), "{modelled:?} for {recorded:?}");
+    assert_reproduced(&recorded);
 }

@@ -14,4 +14,3 @@ mod pvdf_real;
 mod rig;
 mod step_bounds;
 mod step_margin;
-mod stribeck;

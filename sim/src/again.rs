@@ -4,13 +4,13 @@
 use std::fmt;
 
 use anyhow::{Context, bail, ensure};
+use tenax_frames::link::Inbox;
+use tenax_frames::link::captured::line_of;
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::wire::{Down, Event, Identity, Received, ResetCause, Restored, Slow, Up};
 use tenax_logic::device::Device;
 
-use crate::board::agreement::{host_decides, presses, slow_difference};
-use tenax_frames::link::Inbox;
-use tenax_frames::link::captured::line_of;
+use crate::board::agreement::{first, host_decides, presses, slow_difference};
 
 #[derive(Debug, Default)]
 pub struct Recorded {
@@ -23,13 +23,12 @@ pub struct Recorded {
 }
 
 impl Recorded {
-    /// From a line's bytes. Fails if something that decides is not in them: says what, and how it is recorded.
+    /// From a line's bytes; of several starts, the last. Fails if something that decides is not in them.
     pub fn of(line: &[u8]) -> anyhow::Result<Self> {
         let (mut inbox, mut recorded, mut starts) = (Inbox::default(), Self::default(), 0);
         for heard in line.iter().filter_map(|&byte| inbox.push(byte)).flatten() {
             match heard.received.message {
                 Up::Hello { .. } => {
-                    // Of several starts, the last.
                     recorded = Self::default();
                     starts += 1;
                 }
@@ -51,11 +50,10 @@ impl Recorded {
             "the recording does not begin before the board's start, so its state is not known: {how}"
         );
         ensure!(!recorded.frames.is_empty(), "the recording has no frames: {how}");
-        let gap = (0..).zip(&recorded.frames).find(|(n, frame)| frame.sequence != *n);
-        if let Some((n, frame)) = gap {
+        if let Some((n, frame)) = (0..).zip(&recorded.frames).find(|(n, frame)| frame.sequence != *n) {
+            let after = frame.sequence;
             bail!(
-                "frame {n} is missing, and after it comes {}: what was decided after it cannot be repeated",
-                frame.sequence
+                "frame {n} is missing, and after it comes {after}: what was decided after it cannot be repeated"
             );
         }
         Ok(recorded)
@@ -67,7 +65,7 @@ impl Recorded {
             device.restore(*kept, payload);
         }
         if self.identity.reset != ResetCause::PowerOn {
-            device.was_reset();
+            device.fingertip.was_reset();
         }
         device.start(self.identity);
         let frames = self.frames.iter().copied();
@@ -81,7 +79,6 @@ impl Recorded {
         }
     }
 
-    /// Where the board and the host differ first. What the recording holds no more, because it ended, is not compared.
     fn difference(&self, slows: &[Slow], events: &[Event]) -> Option<String> {
         let mut host = slows.iter();
         for board in self.slows.iter().filter(|slow| (slow.frame as usize) < self.frames.len()) {
@@ -92,15 +89,10 @@ impl Recorded {
             }
         }
         let end = self.slows.last().map_or(0, |slow| slow.frame);
-        let until = |events: &[Event]| -> Vec<Event> {
+        let [board, host] = [&self.events[..], events].map(|events| -> Vec<Event> {
             events.iter().filter(|event| event.frame < end).copied().collect()
-        };
-        let (board, host) = (until(&self.events), until(events));
-        if board == host {
-            return None;
-        }
-        let n = board.iter().zip(&host).take_while(|(board, host)| board == host).count();
-        Some(format!("event {n}: the board {:?}, the host {:?}", board.get(n), host.get(n)))
+        });
+        first("event", &board, &host, host.len())
     }
 }
 
@@ -115,19 +107,18 @@ pub struct Outcome {
 
 impl fmt::Display for Outcome {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if let Some(difference) = &self.difference {
-            return write!(f, "DIFFERS: {difference}");
+        let Self { frames, commands, slows, events, difference } = self;
+        match difference {
+            Some(difference) => write!(f, "DIFFERS: {difference}"),
+            None => write!(
+                f,
+                "{frames} frames, {commands} commands: {slows} slow frames and {events} events equal, bit for bit"
+            ),
         }
-        let Self { frames, commands, slows, events, .. } = self;
-        write!(
-            f,
-            "{frames} frames, {commands} commands: {slows} slow frames and {events} events equal, bit for bit"
-        )
     }
 }
 
 /// Replays the recording at `path`. Fails as [`Recorded::of`] does.
 pub fn replay(path: &std::path::Path) -> anyhow::Result<Outcome> {
-    let line = line_of(path)?;
-    Ok(Recorded::of(&line).with_context(|| path.display().to_string())?.replay())
+    Ok(Recorded::of(&line_of(path)?).with_context(|| path.display().to_string())?.replay())
 }

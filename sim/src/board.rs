@@ -1,18 +1,16 @@
-//! The boards that a plant can be connected to, and what a run on one leaves behind.
-//!
-//! What comes 80 times a second or more is handed to a [`Recorder`] while the run goes, so that a long run takes no more
-//! memory than a short one. What is rare is in the [`Summary`]. A [`Run`] is the recorder that keeps everything.
+//! The boards that a plant can be connected to, and the record of a run. A [`Recorder`] hears of what comes 80 times a second or more,
+//! the [`Summary`] has what is rare, and a [`Run`] is the recorder that keeps everything.
 
 pub mod agreement;
 #[cfg(feature = "emulator")]
 pub mod emulated;
 pub mod kept;
-pub mod line_log;
 pub mod recorder;
 pub mod simulated;
 
 use std::ops::{Deref, DerefMut};
 
+use tenax_frames::link::Inbox;
 use tenax_hal_shim::frame::Scan;
 use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::wire::{Answer, Counters, Down, Event, NetworkState, Received, Slow, Up};
@@ -21,7 +19,6 @@ use tenax_logic::emg::model::EmgModel;
 
 pub use recorder::Recorder;
 
-/// What the core spent, in instructions of the emulated Cortex-M4.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TickCost {
     pub count: u64,
@@ -55,8 +52,7 @@ pub struct Summary {
     pub calibrated: Option<EmgModel>,
 }
 
-/// Everything of a run: its summary, and what a [`Recorder`] hears, kept. An hour takes a gigabyte, so this is for short
-/// runs that are compared code by code.
+/// Everything of a run, a gigabyte an hour: for short runs that are compared code by code.
 #[derive(Clone, Debug, Default)]
 pub struct Run {
     pub summary: Summary,
@@ -64,7 +60,6 @@ pub struct Run {
     pub drives: Vec<MotorDrive>,
     pub slipping: Vec<bool>,
     pub slows: Vec<Slow>,
-    /// Every byte that came up the line: what `tenax monitor` would have read.
     pub line: Vec<u8>,
 }
 
@@ -94,6 +89,21 @@ impl Summary {
         if self.feedback.last().map_or(Duty::default(), |last| last.1) != duty {
             self.feedback.push((frame, duty));
         }
+    }
+
+    /// Takes the messages in a line's bytes, of events and slow frames those before `frames`.
+    pub fn hear(&mut self, inbox: &mut Inbox, bytes: &[u8], frames: u32, recorder: &mut dyn Recorder) {
+        self.line_bytes += bytes.len();
+        recorder.line(bytes);
+        for heard in bytes.iter().filter_map(|&byte| inbox.push(byte)).flatten() {
+            match heard.received.message {
+                Up::Slow(slow) if slow.frame >= frames => {}
+                Up::Event(event) if event.frame >= frames => {}
+                message => self.take(message, recorder),
+            }
+        }
+        self.bad_frames = inbox.counts().bad_frames;
+        self.messages_missed = inbox.counts().missed;
     }
 
     fn take(&mut self, message: Up, recorder: &mut dyn Recorder) {

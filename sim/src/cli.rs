@@ -1,6 +1,5 @@
 //! The command line, a file a subcommand.
 
-mod line_file;
 mod plot;
 mod run;
 mod sweep;

@@ -1,9 +1,5 @@
-//! An hour of everyday disturbances in which nothing slips: walking, knocks, doors, tremor, the motor, mains, drifting sensors.
-//!
-//! A pulse here is a pulse without need. What has no measured value is drawn for each minute, over the ranges of its sources, and stands
-//! in the scene's text with the seed that it was drawn from.
-
-use std::fmt::Write;
+//! An hour of everyday disturbances in which nothing slips, so that a pulse is one without need. What has no measured value is drawn for
+//! each minute, over the ranges of its sources.
 
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
@@ -52,22 +48,16 @@ to_mm = 150                     # as scenes/glass.toml
 
 /// 49 s from `from_s` on; the rest of the minute is quiet.
 fn one_minute(text: &mut String, rng: &mut ChaCha8Rng, from_s: f64) {
-    let mut put = |entry: std::fmt::Arguments<'_>| writeln!(text, "{entry}").expect("a string takes all");
+    let swing = |at_s: f64, for_s: f64, rate_hz: f64, peak_m_s2: f64| {
+        let cycles = (for_s * rate_hz).round();
+        format!(
+            "[[swing]]\nat_s = {at_s}\ncycles = {cycles}\nrate_hz = {rate_hz:.3}\npeak_m_s2 = {peak_m_s2:.3}\n"
+        )
+    };
     // Walking: 1.6 to 2.2 steps a second, the hand's acceleration as scenes/glass.toml at most; then standing.
-    let rate_hz = rng.random_range(1.6..2.2);
-    let peak_m_s2 = rng.random_range(1.0..3.0);
-    let cycles = (20.0_f64 * rate_hz).round();
-    put(format_args!(
-        "[[swing]]\nat_s = {from_s}\ncycles = {cycles}\nrate_hz = {rate_hz:.3}\npeak_m_s2 = {peak_m_s2:.3}"
-    ));
+    *text += &swing(from_s, 20.0, rng.random_range(1.6..2.2), rng.random_range(1.0..3.0));
     // Tremor: physiological, 8 to 12 Hz, up to 0.3 m/s^2.
-    let rate_hz: f64 = rng.random_range(8.0..12.0);
-    let cycles = (8.0 * rate_hz).round();
-    let peak_m_s2 = rng.random_range(0.05..0.3);
-    let at_s = from_s + 24.0;
-    put(format_args!(
-        "[[swing]]\nat_s = {at_s}\ncycles = {cycles}\nrate_hz = {rate_hz:.3}\npeak_m_s2 = {peak_m_s2:.3}"
-    ));
+    *text += &swing(from_s + 24.0, 8.0, rng.random_range(8.0..12.0), rng.random_range(0.05..0.3));
     // Knocks: 50 Hz to 2 kHz, 1 to 30 ms, unequal over the films. A door: the lowest and longest of them.
     let mut at_s = from_s;
     for n in 0..7 {
@@ -75,37 +65,29 @@ fn one_minute(text: &mut String, rng: &mut ChaCha8Rng, from_s: f64) {
         let is_door = n == 6;
         let ring_hz = if is_door { rng.random_range(50.0..90.0) } else { decades(rng, 50.0, 2_000.0) };
         let decay_ms = if is_door { 30.0 } else { decades(rng, 1.0, 30.0) };
-        let peak_mv = decades(rng, 5.0, 100.0);
-        let uneven = rng.random_range(0.0..1.0);
-        put(format_args!(
-            "[[knock]]\nat_s = {at_s:.3}\npeak_mv = {peak_mv:.2}\nring_hz = {ring_hz:.1}\ndecay_ms = {decay_ms:.2}\nuneven = {uneven:.3}"
-        ));
+        let (peak_mv, uneven) = (decades(rng, 5.0, 100.0), rng.random_range(0.0..1.0));
+        *text += &format!("[[knock]]\nat_s = {at_s:.3}\npeak_mv = {peak_mv:.2}\nring_hz = {ring_hz:.1}\n");
+        *text += &format!("decay_ms = {decay_ms:.2}\nuneven = {uneven:.3}\n");
     }
     // Somebody switches a machine on near by: mains of 50 or 60 Hz, whatever the board is set to.
     let hum_hz = if rng.random_range(0.0..1.0) < 0.5 { 50 } else { 60 };
     let peak_mv = decades(rng, 0.5, 5.0);
     let at_s = from_s + rng.random_range(10.0..25.0);
-    put(format_args!("[[hum]]\nat_s = {at_s:.3}\nfor_s = 20\npeak_mv = {peak_mv:.3}\nhum_hz = {hum_hz}"));
+    *text += &format!("[[hum]]\nat_s = {at_s:.3}\nfor_s = 20\npeak_mv = {peak_mv:.3}\nhum_hz = {hum_hz}\n");
 }
 
 fn drifts(text: &mut String, rng: &mut ChaCha8Rng) {
-    for name in ["fsr_a", "fsr_b", "fsr_c", "fsr_d"] {
+    let mut drift = |name: String, per_s: String| {
+        *text += &format!("[[fault]]\nat_s = 10\nchannel = \"{name}\"\nkind = \"drift\"\n");
+        *text += &format!("drift_per_s = {per_s}\nreason = \"creep\"\n");
+    };
+    for quadrant in ["a", "b", "c", "d"] {
         // 0.2 N an hour either way: under 5 % a decade of time for an FSR at 1.3 N a quadrant (Interlink FSR 400, data sheet).
-        let drift = rng.random_range(-6e-5..6e-5);
-        writeln!(
-            text,
-            "[[fault]]\nat_s = 10\nchannel = \"{name}\"\nkind = \"drift\"\ndrift_per_s = {drift:.8}\nreason = \"creep\""
-        )
-        .expect("a string takes all");
+        drift(format!("fsr_{quadrant}"), format!("{:.8}", rng.random_range(-6e-5..6e-5)));
     }
     for film in 1..=12 {
         // Offsets of the charge amplifiers: up to 30 mV an hour (assumed).
-        let drift = rng.random_range(-8e-3..8e-3);
-        writeln!(
-            text,
-            "[[fault]]\nat_s = 10\nchannel = \"pvdf_{film}\"\nkind = \"drift\"\ndrift_per_s = {drift:.6}\nreason = \"offset\""
-        )
-        .expect("a string takes all");
+        drift(format!("pvdf_{film}"), format!("{:.6}", rng.random_range(-8e-3..8e-3)));
     }
 }
 

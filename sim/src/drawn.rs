@@ -1,7 +1,5 @@
 //! Scores on drawn worlds: what the hand kept, pressed and let slide, beside a causal oracle and the bound.
 
-use std::cmp::Ordering;
-
 use anyhow::Context;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -131,10 +129,9 @@ impl Report {
         let of = |family: Family| scores.iter().filter(move |score| score.family == family.name());
         let drawn = Family::ALL.into_iter().filter(|&family| of(family).next().is_some());
         let row = |family: Family| Ok((family.name().to_owned(), serde_json::to_value(Row::of(of(family)))?));
-        let mut hardest: Vec<&Score> =
-            scores.iter().filter(|score| score.accepted && score.peak_over_needed.is_some()).collect();
-        hardest
-            .sort_by(|a, b| b.peak_over_needed.partial_cmp(&a.peak_over_needed).unwrap_or(Ordering::Equal));
+        let over = |score: &Score| score.peak_over_needed.filter(|_| score.accepted).unwrap_or(0.0);
+        let mut hardest: Vec<&Score> = scores.iter().collect();
+        hardest.sort_by(|a, b| over(b).total_cmp(&over(a)));
         Ok(Self {
             seed,
             total: Row::of(scores.iter()),

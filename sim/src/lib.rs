@@ -6,8 +6,6 @@
 pub mod again;
 pub mod array;
 pub mod board;
-#[cfg(feature = "emulator")]
-pub mod board_model;
 pub mod budgets;
 pub mod cli;
 pub mod disturbances;

@@ -12,18 +12,16 @@ use tenax_hal_shim::words::Kept;
 use tenax_scene::Act;
 use tenax_scene::plant::{Pins, Plant};
 
-use tenax_frames::serve::{Down, Teller};
+use tenax_frames::serve::Down;
 
 const LAG_MAX: Duration = Duration::from_millis(100);
-const WATCHED: Duration = Duration::from_secs(2);
-const SLOW: f64 = 0.95;
 /// Scans between two looks at the clock: 1 ms.
 const LOOK_SCANS: u64 = 8;
 const BITS_PER_BYTE: u32 = 10;
 const PRESSED: Duration = Duration::from_millis(300);
 
 pub struct Live {
-    down: Down,
+    pub down: Down,
     /// What the real line could have carried by now and did not, in bytes times [`SCAN_HZ`]: below 0 it is busy.
     room: i64,
     pace: Pace,
@@ -68,17 +66,8 @@ impl Person {
 }
 
 impl Live {
-    pub fn new(down: Down, behind: fn(f64)) -> Self {
-        Self { down, room: 0, pace: Pace::new(behind), person: Person::default() }
-    }
-
-    #[must_use]
-    pub fn with_person(self, person: Person) -> Self {
-        Self { person, ..self }
-    }
-
-    pub const fn teller(&self) -> &Teller {
-        &self.down.teller
+    pub fn new(down: Down, person: Person) -> Self {
+        Self { down, room: 0, pace: Pace::default(), person }
     }
 
     fn bytes(&mut self) -> Vec<u8> {
@@ -94,19 +83,14 @@ impl Live {
     }
 }
 
+#[derive(Default)]
 struct Pace {
     began: Option<Instant>,
     scans: u64,
     lost: Duration,
-    watched: Option<(Duration, Duration)>,
-    behind: Option<fn(f64)>,
 }
 
 impl Pace {
-    fn new(behind: fn(f64)) -> Self {
-        Self { began: None, scans: 0, lost: Duration::ZERO, watched: None, behind: Some(behind) }
-    }
-
     fn wait(&mut self) {
         let began = *self.began.get_or_insert_with(Instant::now);
         self.scans += 1;
@@ -120,22 +104,6 @@ impl Pace {
         } else if now - due > LAG_MAX {
             self.lost += now - due;
         }
-        if let Some(part) = self.slowness(now)
-            && let Some(behind) = self.behind.take()
-        {
-            behind(part);
-        }
-    }
-
-    fn slowness(&mut self, now: Duration) -> Option<f64> {
-        let (since, lost) = self.watched.unwrap_or_default();
-        let lasted = now - since;
-        if lasted < WATCHED {
-            return None;
-        }
-        let warm = self.watched.replace((now, self.lost)).is_some();
-        let part = 1.0 - (self.lost - lost).as_secs_f64() / lasted.as_secs_f64();
-        (warm && part < SLOW).then_some(part)
     }
 }
 
@@ -214,30 +182,15 @@ impl<P: Plant> Plant for Served<P> {
 mod tests {
     use super::*;
     use std::sync::mpsc::sync_channel;
+    use tenax_frames::serve::Teller;
 
     #[test]
     fn clients_bytes_come_down_no_faster_than_on_the_real_line() {
         let (down, bytes) = sync_channel(1_000);
         (0..1_000).for_each(|_| down.send(vec![7; 100]).unwrap());
-        let mut live =
-            Live::new(Down { bytes: Arc::new(Mutex::new(bytes)), teller: Teller::default() }, |_| {});
+        let down = Down { bytes: Arc::new(Mutex::new(bytes)), teller: Teller::default() };
+        let mut live = Live::new(down, Person::default());
         let second: usize = (0..SCAN_HZ).map(|_| live.bytes().len()).sum();
         assert!((92_000..92_400).contains(&second), "{second}");
-    }
-
-    #[test]
-    fn a_second_takes_a_second_and_a_stop_is_not_made_up_for() {
-        let (_down, bytes) = sync_channel(1);
-        let mut pace =
-            Live::new(Down { bytes: Arc::new(Mutex::new(bytes)), teller: Teller::default() }, |_| {}).pace;
-        let run = |pace: &mut Pace, scans: u32| {
-            let began = Instant::now();
-            (0..scans).for_each(|_| pace.wait());
-            began.elapsed()
-        };
-        assert!(run(&mut pace, SCAN_HZ / 5) >= Duration::from_millis(199));
-        thread::sleep(Duration::from_millis(700));
-        let after = run(&mut pace, SCAN_HZ / 5);
-        assert!(after >= Duration::from_millis(150), "{after:?}");
     }
 }

@@ -1,8 +1,5 @@
-//! Figures as SVG: a run's stacked panels over one time axis, and the sheets of the studies' charts.
+//! Figures as SVG: sheets of panels.
 
-pub mod draw;
 pub mod figure;
 pub mod sheet;
 pub mod thin;
-
-pub use figure::Figure;

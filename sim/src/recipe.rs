@@ -1,5 +1,6 @@
 //! What every recipe is: a TOML file that says in which line it is wrong, and which files it is for by their names.
 
+use std::fmt::Display;
 use std::ops::Range;
 use std::path::Path;
 
@@ -20,8 +21,7 @@ pub struct RecipeError {
 pub type Checked = Result<(), (Range<usize>, String)>;
 
 pub trait Kind: DeserializeOwned + 'static {
-    /// Name and text of every one in `recipes/`, built in, so that the tool finds them wherever it is run. A test holds them
-    /// against the folder.
+    /// Name and text of every one in `recipes/`.
     const BUILTIN: &'static [(&'static str, &'static str)];
 
     /// Names of the files that it is taken for when no recipe is given; `*` and `?` match as in a shell.
@@ -29,7 +29,6 @@ pub trait Kind: DeserializeOwned + 'static {
 
     fn check(&self) -> Checked;
 
-    /// Reads and checks one; `file` is what errors call it. An error says in which line and what is allowed.
     fn parse(text: &str, file: &str) -> Result<Self, RecipeError> {
         let at = |span: Range<usize>, what: String| RecipeError {
             file: file.to_owned(),
@@ -83,6 +82,35 @@ pub trait Kind: DeserializeOwned + 'static {
 pub struct Named<R> {
     pub name: String,
     pub recipe: R,
+}
+
+/// A factor of 1, for a value that is not given: it has no place in the file, and is never wrong.
+pub fn one() -> Spanned<f64> {
+    Spanned::new(0..0, 1.0)
+}
+
+pub fn within<T: PartialOrd + Display>(value: &Spanned<T>, name: &str, low: T, high: T) -> Checked {
+    let own = value.get_ref();
+    if *own >= low && *own <= high {
+        return Ok(());
+    }
+    Err((value.span(), format!("{name} is {own}; {low} to {high} is allowed")))
+}
+
+pub fn if_within<T: PartialOrd + Display>(
+    value: &Option<Spanned<T>>,
+    name: &str,
+    low: T,
+    high: T,
+) -> Checked {
+    value.as_ref().map_or(Ok(()), |value| within(value, name, low, high))
+}
+
+pub fn check_scale(scale: &Spanned<f64>) -> Checked {
+    if scale.get_ref().is_finite() && *scale.get_ref() != 0.0 {
+        return Ok(());
+    }
+    Err((scale.span(), "scale must be a number other than 0".into()))
 }
 
 pub fn matches<'p>(patterns: impl IntoIterator<Item = &'p Spanned<String>>, file_name: &str) -> bool {

@@ -1,9 +1,5 @@
-//! Recordings: a CSV file and a recipe become a plant that any board can be connected to.
-//!
-//! The recording is what somebody's sensors gave; the recipe is the analogue front end that would have stood between
-//! those sensors and this board's pins. Nothing here knows what a detector is.
+//! Recordings: a CSV file and a recipe, the analogue front end between somebody's sensors and the pins, become a plant.
 
-pub mod calibrate;
 pub mod facts;
 pub mod filter;
 pub mod library;

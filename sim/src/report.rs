@@ -21,10 +21,8 @@ use crate::board::Summary;
 use crate::timeline::Timeline;
 
 const CORE_HZ: f64 = 100e6;
-/// Cycles an instruction takes on average, at least and at most: a Cortex-M4 runs most instructions in one cycle, single
-/// loads in two and taken branches in two to four, and the flash's three wait states are added wherever its prefetch and
-/// cache miss. The emulated core counts instructions, not cycles, and no real board has been measured, so a load is a
-/// bracket, and a wide one.
+/// Cycles an instruction takes on average, at least and at most: one for most, up to four for loads and branches, and three wait states
+/// where the flash's cache misses. The emulated core counts instructions, and no real board has been measured.
 pub const CYCLES_PER_INSTRUCTION: [f64; 2] = [1.0, 3.0];
 
 /// A report. Its keys are stable: `tests/report.rs` lists them. Null where a thing did not happen.
@@ -51,7 +49,6 @@ pub struct Report {
     #[serde(flatten)]
     pub added: added::Sums,
     pub object: reflex::Object,
-    /// What the hand did by itself because it was asked to.
     pub behaviours: Vec<behaviours::Ran>,
     pub detectors: scores::Detectors,
     pub faults: Vec<FaultLine>,
@@ -69,36 +66,12 @@ pub struct Ticks {
     pub core_load_percent: Option<[f64; 2]>,
 }
 
-impl Ticks {
-    fn of(run: &Summary) -> Self {
-        let cost = run.tick_cost;
-        Self {
-            count: run.counters.ticks,
-            dropped: run.counters.frames_lost + run.counters.ticks_late,
-            instructions_mean: cost.map(|cost| cost.instructions_mean),
-            instructions_max: cost.map(|cost| cost.instructions_max),
-            load_percent: cost.map(|cost| load_percent(cost.instructions_mean * f64::from(FRAME_HZ))),
-            core_load_percent: cost.map(|cost| load_percent(cost.instructions_per_s)),
-        }
-    }
-}
-
 /// What the core executes, in instructions. Null on a board whose instructions are not counted.
 #[derive(Clone, Debug, Serialize)]
 pub struct Load {
     pub tick_instructions_mean: Option<f64>,
     /// A period of 0.5 ms, mean: everything that the core executed, by the number of frames.
     pub period_instructions_mean: Option<f64>,
-}
-
-impl Load {
-    fn of(run: &Summary) -> Self {
-        let cost = run.tick_cost;
-        Self {
-            tick_instructions_mean: cost.map(|cost| cost.instructions_mean),
-            period_instructions_mean: cost.map(|cost| cost.instructions_per_s / f64::from(FRAME_HZ)),
-        }
-    }
 }
 
 fn load_percent(instructions_per_s: f64) -> [f64; 2] {
@@ -146,6 +119,7 @@ impl Report {
     /// Makes a report; [`Report::replay`] is for whoever played a recording.
     pub fn new(subject: &Subject) -> Self {
         let (run, timeline) = (subject.run, subject.timeline);
+        let (cost, frame_hz) = (run.tick_cost, f64::from(FRAME_HZ));
         let reflex = reflex::Reflex::of(subject.added, timeline, &run.events, subject.truth);
         Self {
             scene: subject.scene.to_owned(),
@@ -154,8 +128,18 @@ impl Report {
             virtual_s: run.virtual_s,
             wall_s: run.wall_s,
             overruns: run.counters.overruns,
-            ticks: Ticks::of(run),
-            load: Load::of(run),
+            ticks: Ticks {
+                count: run.counters.ticks,
+                dropped: run.counters.frames_lost + run.counters.ticks_late,
+                instructions_mean: cost.map(|cost| cost.instructions_mean),
+                instructions_max: cost.map(|cost| cost.instructions_max),
+                load_percent: cost.map(|cost| load_percent(cost.instructions_mean * frame_hz)),
+                core_load_percent: cost.map(|cost| load_percent(cost.instructions_per_s)),
+            },
+            load: Load {
+                tick_instructions_mean: cost.map(|cost| cost.instructions_mean),
+                period_instructions_mean: cost.map(|cost| cost.instructions_per_s / frame_hz),
+            },
             stack_bytes: run.stack_bytes,
             slip: scores::Slip::of(timeline, subject.truth),
             bound: bound::Bound::of(subject.truth, subject.bound),

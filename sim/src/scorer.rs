@@ -72,7 +72,6 @@ pub enum Outcome {
     Caught(f64),
     /// The first detection began so long after macro onset, s.
     Late(f64),
-    /// Nothing began; a verdict stood at the micro onset.
     SaidBefore,
     Missed,
 }
@@ -100,10 +99,10 @@ pub struct Alarms {
 }
 
 impl Alarms {
-    fn add(&mut self, hours: f64, count: usize, in_micro_slip: usize) {
-        self.hours += hours;
-        self.count += count;
-        self.in_micro_slip += in_micro_slip;
+    fn add(&mut self, other: Self) {
+        self.hours += other.hours;
+        self.count += other.count;
+        self.in_micro_slip += other.in_micro_slip;
         self.per_hour = if self.hours > 0.0 { self.count as f64 / self.hours } else { 0.0 };
     }
 }
@@ -174,9 +173,10 @@ impl Card {
         for stretch in doing {
             let hours = (stretch.to_s - stretch.from_s) / 3_600.0;
             let own = || alarms_s.iter().filter(|t_s| (stretch.from_s..stretch.to_s).contains(t_s));
-            let micro = own().filter(|&&t_s| in_micro_slip(t_s)).count();
-            card.false_by.entry(stretch.doing).or_default().add(hours, own().count(), micro);
-            card.false_alarms.add(hours, own().count(), micro);
+            let in_micro_slip = own().filter(|&&t_s| in_micro_slip(t_s)).count();
+            let alarms = Alarms { hours, count: own().count(), in_micro_slip, per_hour: 0.0 };
+            card.false_by.entry(stretch.doing).or_default().add(alarms);
+            card.false_alarms.add(alarms);
         }
         card
     }
@@ -185,13 +185,9 @@ impl Card {
         self.slips.add(other.slips);
         self.latencies_ms.extend(&other.latencies_ms);
         self.after_micro_ms.extend(&other.after_micro_ms);
-        self.false_alarms.add(
-            other.false_alarms.hours,
-            other.false_alarms.count,
-            other.false_alarms.in_micro_slip,
-        );
+        self.false_alarms.add(other.false_alarms);
         for (&doing, alarms) in &other.false_by {
-            self.false_by.entry(doing).or_default().add(alarms.hours, alarms.count, alarms.in_micro_slip);
+            self.false_by.entry(doing).or_default().add(*alarms);
         }
     }
 
@@ -228,9 +224,12 @@ mod tests {
         [Stretch { from_s: 0.0, to_s: 3.6, doing: Doing::Pour }]
     }
 
+    fn verdicts(spans: &[(f64, f64)]) -> Vec<Verdict> {
+        spans.iter().map(|&(from_s, to_s)| Verdict::new(from_s, to_s)).collect()
+    }
+
     fn card(spans: &[(f64, f64)]) -> Card {
-        let verdicts: Vec<Verdict> = spans.iter().map(|&(from_s, to_s)| Verdict::new(from_s, to_s)).collect();
-        Card::of(&[SLIP, MICRO], &verdicts, &whole())
+        Card::of(&[SLIP, MICRO], &verdicts(spans), &whole())
     }
 
     #[test]
@@ -247,9 +246,7 @@ mod tests {
             (&[(1.36, 1.4)], Outcome::Missed),
             (&[], Outcome::Missed),
         ] {
-            let verdicts: Vec<Verdict> =
-                spans.iter().map(|&(from_s, to_s)| Verdict::new(from_s, to_s)).collect();
-            let found = outcome(&SLIP, 1.1, &verdicts);
+            let found = outcome(&SLIP, 1.1, &verdicts(spans));
             let near = match (found, expected) {
                 (Outcome::Caught(a), Outcome::Caught(b)) | (Outcome::Late(a), Outcome::Late(b)) => {
                     (a - b).abs() < 1e-9

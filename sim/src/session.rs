@@ -1,16 +1,4 @@
 //! One run: from what is to be run, on which board, to its report and its figure.
-//!
-//! ```
-//! use tenax_sim::session::{self, Board};
-//! use tenax_hal_shim::detector::DetectorId;
-//!
-//! let file = session::load_scene("glass")?;
-//! let outcome = session::scene(&file, 1, &Board::Host, &mut |_virtual_s| {})?;
-//! assert_eq!(outcome.report.slip.dropped, Some(false));
-//! let s1 = outcome.report.detectors.of_id(DetectorId::S1);
-//! println!("S1 said slip {} times, was believed {} times", s1.said, s1.detections);
-//! # Ok::<(), anyhow::Error>(())
-//! ```
 
 pub mod controls;
 mod witness;
@@ -21,7 +9,7 @@ use std::path::Path;
 use std::path::PathBuf;
 
 use anyhow::{Context, bail};
-use tenax_logic::emg::model::EmgModel;
+use tenax_frames::link::Inbox;
 use tenax_scene::plant::Plant;
 use tenax_scene::{SceneFile, World, builtin};
 
@@ -29,18 +17,17 @@ use self::witness::{Drawn, Witness};
 #[cfg(feature = "emulator")]
 use crate::board::emulated;
 use crate::board::kept::model_of;
-use crate::board::line_log::LineLog;
 use crate::board::simulated::{frames_in, seconds_of};
 use crate::board::{Recorder, Run, Summary, simulated};
 use crate::disturbances;
 use crate::input;
-use crate::plot::Figure;
+use crate::plot::sheet::Sheet;
 
 use crate::figure::panels;
 use crate::live::{Served, Use};
 use crate::replay::{ReplayPlant, library};
 use crate::report::fate::Fate;
-use crate::report::replay::{ActivePart, Replay};
+use crate::report::replay::Replay;
 use crate::report::{Report, Subject};
 use crate::timeline::Timeline;
 
@@ -109,7 +96,7 @@ impl Board {
 pub struct Outcome {
     pub run: Summary,
     pub report: Report,
-    pub figure: Figure,
+    pub figure: Sheet,
     pub truth: Fate,
 }
 
@@ -154,8 +141,7 @@ pub fn scene_alone(
     judged(file, seed, board, line, recorder, &mut |_| {}, &|_| None)
 }
 
-/// As [`scene`], with the board's line used so; `recorder` is told of the scene's run as it goes. `progress` hears of an infinite time
-/// while the bound is searched, which can take longer than the run.
+/// As [`scene`], with the board's line used so. `progress` hears of an infinite time while the bound is searched.
 pub fn scene_served(
     file: &SceneFile,
     seed: u64,
@@ -180,8 +166,8 @@ fn judged(
     let span_s = (0.0, seconds_of(frames_in(file.duration_s())));
     let world = World::new(file, seed);
     let calibrated = world.calibrated().as_ref().map(model_of).transpose()?;
-    let teller = line.live.as_ref().map(|live| live.teller().clone()).unwrap_or_default();
-    let plant = line.of(Drawn::telling(world, span_s, teller));
+    let teller = line.live.as_ref().map(|live| live.down.teller.clone()).unwrap_or_default();
+    let plant = line.of(Drawn::new(world, span_s, teller));
     let mut witness = Witness::new(0.0, span_s, calibrated.as_ref());
     witness.judge.deaf = file.lifts().collect();
     let (run, Served { mut plant, .. }) = board.record(plant, &mut (&mut witness, recorder), progress)?;
@@ -203,61 +189,42 @@ pub fn replay(
     board: &Board,
     progress: &mut dyn FnMut(f64),
 ) -> anyhow::Result<Outcome> {
-    let options = ReplayOptions { recipe, ..ReplayOptions::default() };
-    replay_served(path, options, seed, board, &mut (), progress)
+    replay_served(path, recipe, Use::default(), seed, board, &mut (), progress)
 }
 
-#[derive(Default)]
-pub struct ReplayOptions<'a> {
-    /// The recipe's name or file. None: the one that the recording's name calls for.
-    pub recipe: Option<&'a str>,
-    pub calibrated: Option<EmgModel>,
-    pub line: Use,
-}
-
-/// Plays a recording; `recorder` is told of the run as it goes.
+/// Plays a recording by a recipe, its name or file, or by the one that the recording's name calls for.
 pub fn replay_served(
     path: &Path,
-    options: ReplayOptions<'_>,
+    recipe: Option<&str>,
+    line: Use,
     seed: u64,
     board: &Board,
     recorder: &mut dyn Recorder,
     progress: &mut dyn FnMut(f64),
 ) -> anyhow::Result<Outcome> {
-    let ReplayOptions { recipe, calibrated, line } = options;
     let (recording, named) = library::read(path, recipe)?;
-    let mut plant = match &named {
-        Some(named) => ReplayPlant::new(&recording, &named.recipe, seed)
-            .with_context(|| format!("recipe {}", named.name))?,
-        None => ReplayPlant::plain(&recording, seed)?,
-    };
-    plant.calibrated = calibrated;
+    let plant = ReplayPlant::of(&recording, named.as_ref(), seed)?;
     let (zero_s, end_s) = (plant.time_zero_s(), plant.time_zero_s() + plant.duration_s());
     // Of the rows held before and after, as much as shows where the recording begins and ends.
     let margin_s = (0.05 * recording.duration_s()).max(0.02);
     let last_s = recording.first_s() + recording.duration_s();
     let span_s = (zero_s.max(recording.first_s() - margin_s), end_s.min(last_s + margin_s));
-    let calibrated = plant.calibrated().as_ref().map(model_of).transpose()?;
-    let mut witness = Witness::new(zero_s, span_s, calibrated.as_ref());
-    let mut active = ActivePart::new(&recording, zero_s);
-    let plant = line.of(plant);
-    let (run, _) = board.record(plant, &mut (&mut (&mut witness, &mut active), recorder), progress)?;
+    let mut witness = Witness::new(zero_s, span_s, None);
+    let (run, _) = board.record(line.of(plant), &mut (&mut witness, recorder), progress)?;
     let scene = name_of(path);
     let (mut report, mut figure, timeline) = told(&scene, board.name(), seed, &run, witness, [None; 2]);
     let lead_in_s = recording.first_s() - zero_s;
-    report.replay =
-        Some(Replay::new(&recording, named.as_ref(), lead_in_s, &timeline, &active, &report.wearer)?);
+    report.replay = Some(Replay::new(&recording, named.as_ref(), lead_in_s, &timeline, &report.wearer)?);
     if let Some(named) = &named {
         figure.subtitle = format!("{} ({}), {}", named.recipe.title, named.name, figure.subtitle);
     }
     Ok(Outcome { run, report, figure, truth: Fate::default() })
 }
 
-/// What a line says that was captured or recorded: its report and its figure. What the plant did is not known.
 pub fn recorded(name: &str, line: &[u8]) -> anyhow::Result<Outcome> {
     let mut run = Summary::default();
     let mut slows = Run::default();
-    LineLog::new(u32::MAX).hear(line, &mut run, &mut slows);
+    run.hear(&mut Inbox::default(), line, u32::MAX, &mut slows);
     let (Some(first), Some(last)) = (slows.slows.first(), slows.slows.last()) else {
         bail!("{name} has no slow frame: it is no board's line");
     };
@@ -276,7 +243,7 @@ fn told(
     run: &Summary,
     witness: Witness,
     [truth, bound]: [Option<&Fate>; 2],
-) -> (Report, Figure, Timeline) {
+) -> (Report, Sheet, Timeline) {
     let Witness { timeline, judge, added, sketch } = witness;
     let subject =
         Subject { scene, board, seed, run, timeline: &timeline, judge: &judge, added: &added, truth, bound };

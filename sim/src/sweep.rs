@@ -37,7 +37,6 @@ impl FromStr for Seeds {
     }
 }
 
-/// Every so-manieth of all runs: `3/16`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
     number: usize,

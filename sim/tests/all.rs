@@ -2,11 +2,9 @@
 
 mod common;
 
-mod acts;
 mod behaviours;
 mod cut_wires;
 mod drawn;
-mod emg;
 mod failures;
 mod feedback;
 mod golden;

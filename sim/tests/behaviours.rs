@@ -1,9 +1,8 @@
 //! The behaviours in their scenes, each of the paper's results beside its control, with a camera that errs as the vision crate does and
 //! with one of whose pictures 5 % are wrong, three in a row. Eight seeds each; `TENAX_SEEDS=100 cargo test ... --test all behaviours` runs more.
 
-use crate::common::{asked, parsed, ran, text};
+use crate::common::{asked, parsed, text};
 use tenax_scene::{Truth, World};
-use tenax_sim::report::text::Text;
 use tenax_sim::session::Board;
 
 fn seeds() -> std::ops::RangeInclusive<u64> {
@@ -24,22 +23,21 @@ fn run(text: &str) -> Vec<Truth> {
 const BURSTS: &str = "[skin]\nwrong_part = 0.05\nwrong_pictures = 3";
 
 /// With the camera's own errors nothing is lost or crushed. With bursts nothing is lost, and at most one seed in eight is crushed: of 100
-/// seeds one crane and three cups are, and the goal is none. Wrong pictures come while the object hangs at the limit of its friction.
+/// seeds one crane and three cups are, and the goal is none.
 fn unharmed(name: &str) -> Vec<Truth> {
-    let harmed = |more: &str| {
+    let crushed = |more: &str| {
         let fates = fates(name, more);
-        let crushed: Vec<_> = seeds().zip(&fates).filter(|(_, truth)| truth.dent_mm > 0.0).collect();
         for (seed, truth) in seeds().zip(&fates) {
-            assert!(!truth.dropped && !truth.left_behind, "{name}, seed {seed}: lost, {more}");
-            assert!(truth.broken_at_s.is_none(), "{name}, seed {seed}: broken, {more}");
+            let lost = truth.dropped || truth.left_behind || truth.broken_at_s.is_some();
+            assert!(!lost, "{name}, seed {seed}, {more}: {:?}", truth.broken_at_s);
         }
-        let seeds: Vec<u64> = crushed.iter().map(|(seed, _)| *seed).collect();
-        (fates, seeds)
+        let crushed = fates.iter().filter(|truth| truth.dent_mm > 0.0).count();
+        (fates, crushed)
     };
-    let (fates_of_bursts, crushed) = harmed(BURSTS);
-    assert!(8 * crushed.len() <= fates_of_bursts.len(), "{name}: crushed in bursts, seeds {crushed:?}");
-    let (fates, crushed) = harmed("");
-    assert!(crushed.is_empty(), "{name}: crushed, seeds {crushed:?}");
+    let (of_bursts, of_them) = crushed(BURSTS);
+    assert!(8 * of_them <= of_bursts.len(), "{name}: {of_them} crushed in bursts");
+    let (fates, of_them) = crushed("");
+    assert_eq!(of_them, 0, "{name}: crushed");
     fates
 }
 
@@ -123,16 +121,4 @@ fn a_turn_comes_within_two_degrees_and_foresight_takes_the_overshoot_away() {
     assert!(2 * over(&papers) >= papers.len() && over(&ours) < over(&papers));
     let (ours, papers) = (mean(ours.iter().map(error_deg)), mean(papers.iter().map(error_deg)));
     assert!(papers > 0.0 && ours < papers, "{ours}, {papers}");
-}
-
-#[test]
-fn a_report_says_what_the_hand_did() {
-    let report = ran(&parsed(&text("hand-over-can")), 1).report;
-    let names: Vec<_> = report.behaviours.iter().map(|ran| (ran.name, ran.ending)).collect();
-    assert_eq!(
-        names,
-        [("gentle grasp", Some("done")), ("hold", Some("stopped by command")), ("hand over", Some("done"))]
-    );
-    assert_eq!((report.object.kept, report.object.handed_over), (Some(true), Some(true)));
-    assert!(Text(&report).to_string().contains("handed over"));
 }

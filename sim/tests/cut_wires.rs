@@ -43,17 +43,13 @@ fn each_of_the_thirty_is_noticed_with_its_resistor_and_hardly_one_without() {
     let all: Vec<(usize, [Noticed; 2])> = (STRAIN..COUNT)
         .into_par_iter()
         .map(|channel| {
-            (
-                channel,
-                ["cut", "open"].map(|kind| noticed_in(&run_of(BENCH, 5, CUT_S, channel, kind), channel)),
-            )
+            let noticed = |kind| noticed_in(&run_of(BENCH, 5, CUT_S, channel, kind), channel);
+            (channel, ["cut", "open"].map(noticed))
         })
         .collect();
-    let late: Vec<_> = all
-        .iter()
-        .filter(|(_, [cut, _])| !cut.is_some_and(|(after_s, _)| (0.0..WITHIN_S).contains(&after_s)))
-        .map(|(channel, [cut, _])| (CHANNELS[*channel].name, cut))
-        .collect();
+    let in_time = |noticed: &Noticed| noticed.is_some_and(|(after_s, _)| (0.0..WITHIN_S).contains(&after_s));
+    let late = all.iter().filter(|(_, [cut, _])| !in_time(cut));
+    let late: Vec<_> = late.map(|(channel, [cut, _])| (CHANNELS[*channel].name, cut)).collect();
     assert!(late.is_empty(), "{late:?}");
     let unnoticed = all.iter().filter(|(_, [_, open])| open.is_none()).count();
     assert!(unnoticed >= 25, "the control: {unnoticed} of {} are not noticed", all.len());
@@ -62,16 +58,12 @@ fn each_of_the_thirty_is_noticed_with_its_resistor_and_hardly_one_without() {
 // Shows R5.
 #[test]
 fn each_film_that_is_cut_before_its_amplifier_is_noticed() {
-    let films: Vec<(usize, Run)> = (PVDF..PVDF + PVDF_COUNT)
-        .into_par_iter()
-        .map(|channel| (channel, run_of(BENCH, 5, CUT_S, channel, "cut")))
-        .collect();
-    for (channel, run) in &films {
-        let noticed = noticed_in(run, *channel);
+    (PVDF..PVDF + PVDF_COUNT).into_par_iter().for_each(|channel| {
+        let noticed = noticed_in(&run_of(BENCH, 5, CUT_S, channel, "cut"), channel);
         let in_time =
             matches!(noticed, Some((after_s, Reason::Dead)) if (0.0..FILM_WITHIN_S).contains(&after_s));
-        assert!(in_time, "{}: {noticed:?}", CHANNELS[*channel].name);
-    }
+        assert!(in_time, "{}: {noticed:?}", CHANNELS[channel].name);
+    });
 }
 
 // Shows R5.

@@ -1,10 +1,8 @@
 //! The vibration motor that tells the wearer, and films that hear it.
 
 use crate::common::{asked, parsed};
-use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::wire::{Event, EventKind, Slow};
 use tenax_hal_shim::words::GripMode;
-use tenax_scene::plant::{Pins, Plant};
 use tenax_scene::{SceneFile, World};
 use tenax_sim::board::{Run, simulated};
 
@@ -18,6 +16,7 @@ struct Drawn {
     choice: u32,
 }
 
+/// Films that hear the motor with `least_mv` to ten times as much: the gear of the hand gives 1 mV.
 fn drawn(n: usize, least_mv: f64) -> Drawn {
     let part = |step: f64| (0.5 + n as f64 * step).fract();
     Drawn {
@@ -56,36 +55,6 @@ fn differs(one: &Run, other: &Run) -> Option<String> {
     events.map(|(a, b)| format!("{a:?} and {b:?}"))
 }
 
-fn answers(run: &Run) -> usize {
-    let slips = |event: &&Event| matches!(event.kind, EventKind::Mode { to: GripMode::Slip, .. });
-    run.events.iter().filter(slips).count()
-}
-
-struct Naive {
-    world: World,
-    scans: u32,
-}
-
-impl Plant for Naive {
-    fn within(&self) -> Option<&dyn Plant> {
-        Some(&self.world)
-    }
-
-    fn within_mut(&mut self) -> Option<&mut dyn Plant> {
-        Some(&mut self.world)
-    }
-
-    fn vibrate(&mut self, _duty: Duty) {}
-
-    fn scan(&mut self, drive: MotorDrive) -> &Pins {
-        // Bursts as long as the board's, while the glass is held and nothing slips.
-        self.scans += 1;
-        let burst = self.scans > 80_000 && self.scans % 8_000 < 500;
-        self.world.vibrate(if burst { Duty::FULL } else { Duty::default() });
-        self.world.scan(drive)
-    }
-}
-
 /// Draws of each scene; `TENAX_SEEDS=10` covers the decade.
 fn draws() -> usize {
     asked("TENAX_SEEDS").unwrap_or(2)
@@ -115,9 +84,10 @@ fn no_slip_is_heard_of_it_and_the_hand_does_as_without_it() {
 
 // Shows R11.
 #[test]
-fn far_louder_it_is_answered_once_or_twice_and_bursts_at_any_time_again_and_again() {
-    // 10 to 1000 mV, where the gear of the hand gives 1 mV: here the boundary of the test above is passed.
-    let (mut once, mut there, mut naively) = (0, 0, 0);
+fn far_louder_it_is_answered_once_or_twice_and_does_not_feed_itself() {
+    let slips = |event: &&Event| matches!(event.kind, EventKind::Mode { to: GripMode::Slip, .. });
+    let answers = |run: &Run| run.events.iter().filter(slips).count();
+    let mut answered = 0;
     for (base, least_mv) in SCENES.into_iter().flat_map(|base| [(base, 10.0), (base, 100.0)]) {
         for n in 0..draws() {
             let (draw, seed) = (drawn(n, least_mv), 1 + n as u64 / 2);
@@ -125,18 +95,9 @@ fn far_louder_it_is_answered_once_or_twice_and_bursts_at_any_time_again_and_agai
             let vibrates = ran(base, draw, seed);
             let more = answers(&vibrates).saturating_sub(answers(&deaf));
             assert!(more <= 2, "{base}, seed {seed}, {draw:?}: {more} more");
-            assert!(
-                vibrates.feedback.len() <= deaf.feedback.len(),
-                "{base}, seed {seed}, {draw:?}: it feeds itself"
-            );
-            once += more;
-            if base == "glass" && least_mv < 100.0 {
-                let world = World::new(&with(base, draw), seed);
-                let (naive, _) = simulated::run(Naive { world, scans: 0 }, &mut |_| {});
-                there += more;
-                naively += answers(&naive).saturating_sub(answers(&deaf));
-            }
+            assert!(vibrates.feedback.len() <= deaf.feedback.len(), "{base}, seed {seed}, {draw:?}");
+            answered += more;
         }
     }
-    assert!(once > 0 && there <= 2 && naively >= 2 * draws(), "{once}, {there}, {naively}");
+    assert!(answered > 0, "the boundary of the test above is passed");
 }

@@ -7,10 +7,11 @@ use std::path::Path;
 
 use rayon::prelude::*;
 use tenax_scene::{SceneFile, World, builtin};
-use tenax_sim::board::{Recorder, Run, simulated};
+use tenax_sim::board::{Run, simulated};
+use tenax_sim::live::Use;
 use tenax_sim::recipe::Kind;
 use tenax_sim::replay::Recipe;
-use tenax_sim::session::{self, Board, ReplayOptions};
+use tenax_sim::session::{self, Board};
 
 use crate::common::hash::{Hash, compare, of_run};
 use crate::common::shared;
@@ -30,12 +31,9 @@ fn scene(name: &str, text: &str, seed: u64) -> Hash {
 }
 
 fn replayed(path: &Path) -> Hash {
-    let mut run = Run::default();
-    let recorder: &mut dyn Recorder = &mut run;
-    let outcome =
-        session::replay_served(path, ReplayOptions::default(), 1, &Board::Host, recorder, &mut |_| {})
-            .expect("the recording and its recipe are good");
-    run.summary = outcome.run;
+    let (mut run, line) = (Run::default(), Use::default());
+    let outcome = session::replay_served(path, None, line, 1, &Board::Host, &mut run, &mut |_| {});
+    run.summary = outcome.expect("the recording and its recipe are good").run;
     of_run(&run)
 }
 

@@ -8,17 +8,13 @@ use tenax_sim::budgets::Budgets;
 
 /// Lines of the files with this extension below a folder, but for those that Cargo builds.
 fn lines(folder: &Path, extension: &str) -> u64 {
-    let mut sum = 0;
-    for entry in std::fs::read_dir(folder).expect("a folder of the checkout") {
-        let path = entry.expect("an entry").path();
-        let name = path.file_name().unwrap_or_default();
-        if path.is_dir() && name != "target" && !name.as_encoded_bytes().starts_with(b".") {
-            sum += lines(&path, extension);
-        } else if path.extension() == Some(OsStr::new(extension)) {
-            sum += std::fs::read_to_string(&path).expect("source is text").lines().count() as u64;
-        }
-    }
-    sum
+    let files = glob::glob(&format!("{}/**/*.{extension}", folder.display())).expect("a pattern");
+    let files = files.map(|path| path.expect("a folder of the checkout"));
+    let own = files.filter(|path| {
+        let built = |part: &OsStr| part == "target" || part.as_encoded_bytes().starts_with(b".");
+        !path.strip_prefix(folder).expect("it is below").iter().any(built)
+    });
+    own.map(|path| std::fs::read_to_string(path).expect("source is text").lines().count() as u64).sum()
 }
 
 #[test]

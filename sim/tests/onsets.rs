@@ -1,32 +1,37 @@
-//! What a run reports of a detector's onset is the frame in which its evidence says that it decided.
+//! The evidence of a detector names the frame in which it decided: that of its onset.
 
-use crate::common::onsets::held_against_evidence;
-use tenax_hal_shim::detector::DetectorId;
-use tenax_sim::board::{Recorder, Run};
-use tenax_sim::live::Use;
-use tenax_sim::session::{self, Board};
-use tenax_sim::timeline::Timeline;
+use tenax_hal_shim::channel::FRAMES_PER_SLOW_FRAME;
+use tenax_hal_shim::detector::{DetectorId, DetectorSet};
+use tenax_scene::World;
+use tenax_sim::board::simulated;
+use tenax_sim::session::DEFAULT_SCENE;
+
+use crate::common::loaded;
 
 #[test]
 fn every_onset_of_a_scene_is_where_its_evidence_says() {
-    // S1 and S2; the MLP.
-    for (scene, speaks) in [
-        (session::DEFAULT_SCENE, vec![DetectorId::S1, DetectorId::S2]),
-        ("array-pick", vec![DetectorId::Mlp]),
-    ] {
-        let file = session::load_scene(scene).unwrap();
-        let mut run = Run::default();
-        let outcome =
-            session::scene_served(&file, 1, &Board::Host, Use::default(), &mut run, &mut |_| {}).unwrap();
-        let mut timeline = Timeline::new(0.0);
-        run.slows.iter().for_each(|slow| timeline.slow(slow));
-        let onsets = held_against_evidence(&run.slows);
-        for id in DetectorId::ALL {
-            let decided_s: Vec<f64> =
-                onsets[id as usize].iter().map(|&frame| timeline.time_s(frame)).collect();
-            assert_eq!(timeline.said(id), decided_s, "{scene}: {id:?}");
-            assert_eq!(outcome.report.detectors.of_id(id).said, decided_s.len(), "{scene}: {id:?}");
-            assert!(!decided_s.is_empty() || !speaks.contains(&id), "{scene}: {id:?} said nothing");
+    for (scene, speak) in
+        [(DEFAULT_SCENE, &[DetectorId::S1, DetectorId::S2][..]), ("array-pick", &[DetectorId::Mlp])]
+    {
+        let (run, _) = simulated::run(World::new(&loaded(scene), 1), &mut |_| {});
+        let (mut before, mut spoke) = (DetectorSet::NONE, DetectorSet::NONE);
+        for slow in &run.slows {
+            let first = slow.frame + 1 - u32::from(FRAMES_PER_SLOW_FRAME);
+            for &(id, evidence) in &slow.evidence {
+                // One that decides in every frame has decided again since: evidence has the last decision of a slow frame.
+                let in_every_frame = evidence.decided_at == slow.frame;
+                let mut was = before.contains(id);
+                for (frame, tick) in (first..).zip(&slow.ticks) {
+                    let says = tick.said.contains(id);
+                    let decided = in_every_frame || frame == evidence.decided_at;
+                    assert!(says == was || decided, "{scene}: {id:?} in frame {frame}: {evidence:?}");
+                    spoke = spoke.with(id, says || spoke.contains(id));
+                    was = says;
+                }
+                assert_eq!(evidence.says(), was, "{scene}: {id:?} after frame {}: {evidence:?}", slow.frame);
+            }
+            before = slow.ticks.last().map_or(DetectorSet::NONE, |tick| tick.said);
         }
+        assert!(speak.iter().all(|id| spoke.contains(*id)), "{scene}: {spoke:?}");
     }
 }

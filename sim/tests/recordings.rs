@@ -1,5 +1,6 @@
 //! A recording with a mistake gets one message that names the file, the row and what is allowed.
 
+use crate::common::with_head;
 use tenax_sim::recipe::Kind;
 use tenax_sim::replay::recipe::Time;
 use tenax_sim::replay::{Recipe, Recording};
@@ -41,24 +42,17 @@ fn mistakes_are_named_by_file_and_row() {
 
 #[test]
 fn a_recipe_names_the_clock_and_its_unit() {
-    let recipe = |time: &str| {
-        let text = format!(
-            "title = ''\ndescription = ''\n[time]\n{time}\n[[map]]\ncolumn = 'a'\nchannels = ['pvdf_1']\ngain = 1.0\n"
-        );
-        Recipe::parse(&text, "r.toml")
-    };
+    let map = "[[map]]\ncolumn = 'a'\nchannels = ['pvdf_1']\ngain = 1.0\n";
+    let recipe = |time: &str| Recipe::parse(&with_head(&format!("[time]\n{time}\n{map}")), "r.toml");
     let read = |csv: &str, time: &str| Recording::timed(csv.as_bytes(), "r.csv", &recipe(time).unwrap().time);
-    let csv = "stamp,a,t\n1500,1,7\n2500,2,7\n";
+    let csv = "stamp,a,t\n1500,1,7\n1600,2,7\n";
     for (unit, first_s) in [("s", 1_500.0), ("ms", 1.5), ("us", 0.001_5)] {
-        let time = format!("column = 'stamp'\nunit = '{unit}'");
-        let recording = read(&csv.replace("2500", if unit == "s" { "1501" } else { "2500" }), &time).unwrap();
+        let recording = read(csv, &format!("column = 'stamp'\nunit = '{unit}'")).unwrap();
         assert_eq!((recording.first_s(), recording.signals().collect::<Vec<_>>()), (first_s, vec!["a", "t"]));
     }
     let error = read(csv, "column = 'when'").unwrap_err().to_string();
-    assert!(
-        error.starts_with("r.csv:1: no time column `when`, which the recipe names; the columns are `stamp`"),
-        "{error}"
-    );
+    let expected = "r.csv:1: no time column `when`, which the recipe names; the columns are `stamp`";
+    assert!(error.starts_with(expected), "{error}");
     let error = read("t,a\n0,1\n5500,1\n", "unit = 's'").unwrap_err().to_string();
     assert!(error.contains("[time] unit = \"ms\""), "{error}");
     let error = recipe("unit = 'h'").unwrap_err().to_string();
@@ -66,13 +60,9 @@ fn a_recipe_names_the_clock_and_its_unit() {
 }
 
 #[test]
-fn what_is_not_text_is_refused_by_row() {
+fn what_is_not_text_is_refused_by_row_and_a_missing_file_is_named() {
     let error = Recording::parse(&b"t,a\n0,1\n1,\xff\xfe\n"[..], "r.csv").unwrap_err().to_string();
     assert!(error.starts_with("r.csv:3: not text"), "{error}");
-}
-
-#[test]
-fn a_missing_file_is_named() {
     let error = Recording::read("no/such/file.csv".as_ref(), &Time::default()).unwrap_err().to_string();
     assert!(error.starts_with("no/such/file.csv: cannot be read"), "{error}");
 }

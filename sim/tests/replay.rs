@@ -1,11 +1,13 @@
 //! A recording at the pins: on the right channel, at the right time, through the right front end. What the shared recordings
 //! must and must not set off is judged by `tenax check`.
 
+use std::collections::BTreeSet;
+
 use crate::common::{recipe, recording};
 use tenax_hal_shim::channel::{self, COUNT, SCAN_HZ};
 use tenax_hal_shim::front_end::fsr_mv;
 use tenax_hal_shim::motor::MotorDrive;
-use tenax_scene::plant::Plant;
+use tenax_scene::plant::{Pins, Plant};
 use tenax_sim::replay::ReplayPlant;
 
 const NOISE_V: f64 = 0.003;
@@ -42,14 +44,6 @@ fn columns_that_are_channels_need_no_recipe() {
 fn a_column_that_is_no_channel_is_named() {
     let error = ReplayPlant::plain(&recording("t,pdvf_2\n0,1\n1,1\n"), 1).unwrap_err().to_string();
     assert!(error.starts_with("r.csv:1: column `pdvf_2` is no channel"), "{error}");
-}
-
-#[test]
-fn a_pin_at_rest_is_never_quite_still() {
-    let pins = pins(ReplayPlant::plain(&recording("t,pvdf_1\n0,1.65\n0.1,1.65\n"), 1).unwrap());
-    let codes: std::collections::BTreeSet<u16> =
-        pins.iter().map(|volts| tenax_scene::plant::Pins(*volts).codes()[channel("fsr_a")]).collect();
-    assert!(codes.len() > 1, "one code for ever would be a broken sensor");
 }
 
 #[test]
@@ -96,9 +90,12 @@ fn a_held_force_comes_on_after_the_board() {
 }
 
 #[test]
-fn the_same_seed_gives_the_same_codes() {
+fn a_pin_at_rest_is_never_quite_still_and_the_same_seed_gives_the_same_noise() {
     let recording = recording("t,pvdf_1\n0,1.65\n0.1,1.65\n");
-    let codes = |seed| pins(ReplayPlant::plain(&recording, seed).unwrap());
-    assert_eq!(codes(7), codes(7));
-    assert_ne!(codes(7), codes(8));
+    let pins = |seed| pins(ReplayPlant::plain(&recording, seed).unwrap());
+    assert_eq!(pins(7), pins(7));
+    assert_ne!(pins(7), pins(8));
+    let fsr = |volts: &[f64; COUNT]| Pins(*volts).codes()[channel("fsr_a")];
+    let codes: BTreeSet<u16> = pins(1).iter().map(fsr).collect();
+    assert!(codes.len() > 1, "one code for ever would be a broken sensor");
 }

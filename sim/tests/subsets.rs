@@ -56,12 +56,8 @@ fn all_detectors_keep_whole_what_any_subset_keeps() {
         .par_iter()
         .filter_map(|&(name, fault, seed)| {
             let scene = drawn(name, fault, seed);
-            let kept: Vec<bool> = (0..1 << MEMBERS.len())
-                .map(|bits| {
-                    let fate = gripped(&scene, seed, Grips::Reflex(subset(bits)));
-                    fate.kept() && fate.broken_at_s.is_none()
-                })
-                .collect();
+            let keeps = |bits| gripped(&scene, seed, Grips::Reflex(subset(bits))).kept();
+            let kept: Vec<bool> = (0..1 << MEMBERS.len()).map(keeps).collect();
             let better: Vec<_> =
                 (0..kept.len()).filter(|&bits| kept[bits]).map(|bits| subset(bits as u32)).collect();
             (!kept[15] && !better.is_empty()).then(|| format!("{name}, seed {seed}, {fault}: {better:?}"))

@@ -12,7 +12,6 @@ use crate::quality::{Blind, Watch};
 use crate::rectify::Rectifier;
 use crate::skin::Skin;
 
-/// Markers without which there is no force.
 const MARKERS_MIN: usize = 4;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,7 +20,6 @@ pub struct Summary {
     /// Reason not to believe the rest.
     pub blind: Option<Blind>,
     pub markers: usize,
-    pub found: usize,
     /// None while too few markers are known.
     pub forces: Option<Forces>,
     pub object: Option<Sighting>,
@@ -149,7 +147,6 @@ impl Camera {
             frame: number,
             blind,
             markers: markers.len(),
-            found,
             forces,
             object,
             flow,
@@ -166,9 +163,8 @@ impl Camera {
 /// Pictures from which the angle of a held object is made.
 const HEADING_PICTURES: f32 = 40.0;
 const MOMENTS_WEIGHT: f32 = 0.01;
-/// Rows of the object that are looked at for its move.
+/// One of so many rows is looked at for a move.
 const OBJECT_ROWS: usize = 2;
-/// Rows of the background that are looked at: one of so many is enough for one move.
 const BACKGROUND_ROWS: usize = 4;
 const RIM_PX: f32 = 3.0;
 

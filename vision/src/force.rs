@@ -1,7 +1,4 @@
-//! Force and torque from the markers' moves (FingerVision 2017, section IV A).
-//!
-//! The paper's estimate has no unit: shear is a marker's move, normal force is the size of that move. [`Forces`] is that.
-//! [`Loads`](crate::loads::Loads) makes newtons of it, with coefficients that are calibrated under known loads.
+//! Force and torque from the markers' moves, px (FingerVision 2017, section IV A).
 
 use crate::frame::{HEIGHT, Point, WIDTH};
 use crate::markers::Marker;
@@ -15,41 +12,29 @@ pub struct Forces {
     pub x: f32,
     pub y: f32,
     pub normal: f32,
-    pub spread: f32,
-    pub growth: f32,
     /// Torque about the skin's normal, px^2.
     pub twist: f32,
-    pub markers: usize,
 }
 
 impl Forces {
     /// The means over the markers that are known. None if there are fewer than `least`.
     pub fn of(markers: &[Marker], least: usize) -> Option<Self> {
-        let mut sum = Self::default();
+        let (mut sum, mut count) = (Self::default(), 0);
         for marker in markers.iter().filter(|marker| marker.known()) {
             let (x, y) = marker.moved();
             let (rx, ry) = (marker.rest.at.x - MIDDLE.x, marker.rest.at.y - MIDDLE.y);
-            let far = libm::hypotf(rx, ry).max(1.0);
             sum.x += x;
             sum.y += y;
             sum.normal += libm::hypotf(x, y);
-            sum.spread += (x * rx + y * ry) / far;
-            sum.growth += marker.growth;
             sum.twist += rx * y - ry * x;
-            sum.markers += 1;
+            count += 1;
         }
-        if sum.markers < least.max(1) {
-            return None;
-        }
-        let n = sum.markers as f32;
-        Some(Self {
+        let n = count as f32;
+        (count >= least.max(1)).then(|| Self {
             x: sum.x / n,
             y: sum.y / n,
             normal: sum.normal / n,
-            spread: sum.spread / n,
-            growth: sum.growth / n,
             twist: sum.twist / n,
-            markers: sum.markers,
         })
     }
 }
@@ -80,13 +65,11 @@ mod tests {
                 && (sheared.y + 4.0).abs() < 1e-4
                 && (sheared.normal - 5.0).abs() < 1e-4
         );
-        assert!(sheared.spread.abs() < 0.01 && sheared.twist.abs() < 0.01);
+        assert!(sheared.twist.abs() < 0.01);
         let pressed = Forces::of(&markers(|x, y| (0.05 * x, 0.05 * y)), 5).unwrap();
-        assert!(
-            pressed.x.abs() < 1e-4 && pressed.normal > 2.0 && (pressed.spread - pressed.normal).abs() < 1e-3
-        );
+        assert!(pressed.x.abs() < 1e-4 && pressed.normal > 2.0);
         let turned = Forces::of(&markers(|x, y| (-0.05 * y, 0.05 * x)), 5).unwrap();
-        assert!(turned.twist > 100.0 && turned.spread.abs() < 1e-3);
+        assert!(turned.twist > 100.0);
         assert_eq!(Forces::of(&[], 1), None);
     }
 }

@@ -8,8 +8,9 @@ pub const FRAME_BYTES: usize = 3 * PIXELS;
 
 pub type Plane = [u8; PIXELS];
 
-pub fn plane() -> Box<Plane> {
-    match vec![0; PIXELS].into_boxed_slice().try_into() {
+/// A value for each pixel, 0.
+pub fn plane<T: Clone + Default>() -> Box<[T; PIXELS]> {
+    match vec![T::default(); PIXELS].into_boxed_slice().try_into() {
         Ok(plane) => plane,
         Err(_) => unreachable!("its length is that of a plane"),
     }
@@ -30,6 +31,10 @@ impl<'a> Frame<'a> {
         let (blue, rest) = rest.split_first_chunk::<PIXELS>()?;
         let red = rest.try_into().ok()?;
         Some(Self { red, green, blue })
+    }
+
+    pub const fn colour(&self, at: usize) -> [u8; 3] {
+        [self.red[at], self.green[at], self.blue[at]]
     }
 
     pub fn grey(&self, into: &mut Plane) {

@@ -1,18 +1,14 @@
-//! What a camera behind a clear skin tells (FingerVision 2017): where the markers on the skin are and so what force acts
-//! on it, where an object is, how it lies, and whether it slips.
-//!
-//! Pictures are of 320 x 240 pixels. Enter by [`Camera`], which takes a picture and gives a [`Summary`]; time is the caller's.
+//! A camera behind a clear skin (FingerVision 2017): force from markers on the skin; an object, its direction, and whether it slips.
+//! Pictures are of 320 x 240 pixels. [`Camera`] takes a picture and gives a [`Summary`]; time is the caller's.
 #![forbid(unsafe_code)]
 
 pub mod camera;
 pub mod force;
 pub mod frame;
-pub mod loads;
 pub mod markers;
 pub mod mask;
 mod motion;
 pub mod object;
-mod plane_fit;
 pub mod quality;
 pub mod rectify;
 mod skin;

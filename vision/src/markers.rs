@@ -6,7 +6,7 @@ mod window;
 
 use crate::frame::{Plane, Point};
 
-pub use self::calibration::{Calibration, FRAMES as CALIBRATION_FRAMES};
+pub use self::calibration::Calibration;
 pub use self::outline::RAYS;
 use self::outline::{Fit, Outline};
 use self::window::{SIDE, Window};
@@ -82,7 +82,7 @@ impl Marker {
     pub fn follow(&mut self, grey: &Plane) {
         let lost = self.failures > FAILURES_MAX;
         let from = if lost && self.probation == 0 { (self.rest.at, 0.0) } else { (self.at, self.growth) };
-        match find(grey, &self.rest, from.0, from.1, STEP_MAX_PX) {
+        match find(grey, &self.rest, from.0, from.1) {
             Ok((at, growth)) => {
                 (self.at, self.growth) = (at, growth);
                 if lost {
@@ -102,14 +102,6 @@ impl Marker {
         }
         let failed = if self.found.is_ok() { 0 } else { u16::MAX >> FAILED_SHARE_FRAMES };
         self.failed_share = self.failed_share - (self.failed_share >> FAILED_SHARE_FRAMES) + failed;
-    }
-
-    fn place(&mut self, grey: &Plane, moved: (f32, f32)) {
-        let near = Point { x: self.rest.at.x + moved.0, y: self.rest.at.y + moved.1 };
-        self.found = find(grey, &self.rest, near, 0.0, MOVE_MAX_PX).map(|(at, growth)| {
-            (self.at, self.growth) = (at, growth);
-        });
-        self.failures = if self.found.is_ok() { 0 } else { FAILURES_MAX + 1 };
     }
 
     fn disown(&mut self, failure: Failure) {
@@ -141,35 +133,11 @@ impl Markers {
         Self { neighbours: (0..markers.len()).map(nearest).collect(), markers }
     }
 
-    /// Looks for each in the next picture.
     pub fn follow(&mut self, grey: &Plane) {
         self.markers.iter_mut().for_each(|marker| marker.follow(grey));
         for at in 0..self.markers.len() {
             if self.markers[at].found.is_ok() && self.apart(at) > APART_MAX_PX {
                 self.markers[at].disown(Failure::Apart);
-            }
-        }
-    }
-
-    /// Looks for each in a picture that has nothing to do with the one before: a marker may be anywhere within half a window
-    /// of where it was calibrated, and what its neighbours say helps to find it.
-    pub fn locate(&mut self, grey: &Plane) {
-        for marker in &mut self.markers {
-            *marker = Marker::new(marker.rest);
-            marker.place(grey, (0.0, 0.0));
-        }
-        // Those that are apart from their neighbours, or were not found, are looked for where those say.
-        for _ in 0..2 {
-            for at in 0..self.markers.len() {
-                let Some((x, y)) = self.neighbours_moved(at) else { continue };
-                let (own_x, own_y) = self.markers[at].moved();
-                if self.markers[at].found.is_err() || libm::hypotf(own_x - x, own_y - y) > APART_MAX_PX {
-                    self.markers[at].place(grey, (x, y));
-                    let (own_x, own_y) = self.markers[at].moved();
-                    if self.markers[at].found.is_ok() && libm::hypotf(own_x - x, own_y - y) > APART_MAX_PX {
-                        self.markers[at].disown(Failure::Apart);
-                    }
-                }
             }
         }
     }
@@ -203,13 +171,7 @@ impl std::ops::Deref for Markers {
     }
 }
 
-fn find(
-    grey: &Plane,
-    shape: &Shape,
-    last: Point,
-    grown: f32,
-    step_max_px: f32,
-) -> Result<(Point, f32), Failure> {
+fn find(grey: &Plane, shape: &Shape, last: Point, grown: f32) -> Result<(Point, f32), Failure> {
     // The outline may stand out where the blob is not alone: it is looked for where it was last.
     let (near, excuse) = match blob(grey, shape, last) {
         Ok(at) => (at, Failure::Outline),
@@ -221,7 +183,7 @@ fn find(
         let radii = &grown_radii;
         fit = Outline::look(grey, at, radii).fit(radii).ok_or(excuse)?;
         at = Point { x: at.x + fit.x, y: at.y + fit.y };
-        if at.distance(last) > step_max_px || at.distance(shape.at) > MOVE_MAX_PX {
+        if at.distance(last) > STEP_MAX_PX || at.distance(shape.at) > MOVE_MAX_PX {
             return Err(Failure::Moved);
         }
         if fit.x.abs() + fit.y.abs() < 0.3 {

@@ -1,6 +1,5 @@
 //! A set of pixels, one bit each: growing and shrinking it are shifts of whole words.
 
-mod grow;
 mod pieces;
 
 use std::ops::Range;
@@ -24,10 +23,6 @@ impl Default for Mask {
 
 impl Mask {
     pub const EMPTY: Self = Self { rows: [[0; WORDS]; HEIGHT] };
-
-    pub const fn rows(&self) -> &[[u64; WORDS]; HEIGHT] {
-        &self.rows
-    }
 
     fn words_mut(&mut self) -> impl Iterator<Item = &mut Word> {
         self.rows.iter_mut().flatten()
@@ -69,48 +64,25 @@ impl Mask {
         self.rows[y][x / BITS] >> (x % BITS) & 1 != 0
     }
 
-    pub fn of_outline(corners: &[(f32, f32)]) -> Self {
-        let mut mask = Self::EMPTY;
-        for (x, y) in (0..HEIGHT).flat_map(|y| (0..WIDTH).map(move |x| (x, y))) {
-            let (px, py) = (x as f32, y as f32);
-            let sides = corners.iter().zip(corners.iter().cycle().skip(1));
-            let crossings = sides.filter(|((ax, ay), (bx, by))| {
-                (*ay > py) != (*by > py) && px < (bx - ax) * (py - ay) / (by - ay) + ax
-            });
-            if crossings.count() % 2 == 1 {
-                mask.insert(x, y);
-            }
-        }
-        mask
-    }
-
-    pub fn overlap(&self, other: &Self) -> f32 {
-        let words = || self.rows.iter().flatten().zip(other.rows.iter().flatten());
-        let both: u32 = words().map(|(own, other)| (own & other).count_ones()).sum();
-        let either: u32 = words().map(|(own, other)| (own | other).count_ones()).sum();
-        both as f32 / either.max(1) as f32
-    }
-
     pub fn count(&self) -> u32 {
         self.rows.iter().flatten().map(|word| word.count_ones()).sum()
     }
 
+    #[inline]
+    fn combine(&mut self, other: &Self, with: impl Fn(Word, Word) -> Word) {
+        self.words_mut().zip(other.rows.iter().flatten()).for_each(|(own, other)| *own = with(*own, *other));
+    }
+
     pub fn intersect(&mut self, other: &Self) {
-        for (word, other) in self.words_mut().zip(other.rows.iter().flatten()) {
-            *word &= other;
-        }
+        self.combine(other, |own, other| own & other);
     }
 
     pub fn subtract(&mut self, other: &Self) {
-        for (word, other) in self.words_mut().zip(other.rows.iter().flatten()) {
-            *word &= !other;
-        }
+        self.combine(other, |own, other| own & !other);
     }
 
     pub fn unite(&mut self, other: &Self) {
-        for (word, other) in self.words_mut().zip(other.rows.iter().flatten()) {
-            *word |= other;
-        }
+        self.combine(other, |own, other| own | other);
     }
 
     /// Keeps and adds the pixels of which at least five of the nine around them, their own included, are in it: single pixels
@@ -133,6 +105,24 @@ impl Mask {
         }
     }
 
+    /// Adds all pixels within `times` px, along rows and columns.
+    pub fn dilate(&mut self, times: usize) {
+        for _ in 0..times {
+            let wide = self.rows.each_ref().map(widened);
+            for (y, row) in self.rows.iter_mut().enumerate() {
+                let near = &wide[y.saturating_sub(1)..(y + 2).min(HEIGHT)];
+                *row = std::array::from_fn(|word| near.iter().fold(0, |all, row| all | row[word]));
+            }
+        }
+    }
+
+    /// Keeps the pixels that have none outside of it within `times` px; beyond the picture's border nothing is outside.
+    pub fn erode(&mut self, times: usize) {
+        self.invert();
+        self.dilate(times);
+        self.invert();
+    }
+
     pub fn thin(&mut self, keep: usize) {
         let gone = self.rows.iter_mut().enumerate().filter(|(y, _)| y % keep != 0);
         gone.for_each(|(_, row)| *row = [0; WORDS]);
@@ -144,28 +134,11 @@ impl Mask {
         }
     }
 
+    /// Adds what does not reach the border from outside of it.
     pub fn fill_holes(&mut self) {
-        let mut free = self.clone();
-        free.invert();
-        let mut outside = Self::EMPTY;
-        for (y, (row, free)) in outside.rows.iter_mut().zip(&free.rows).enumerate() {
-            *row = if y == 0 || y == HEIGHT - 1 { *free } else { [0; WORDS] };
-            row[0] |= free[0] & 1;
-            row[WORDS - 1] |= free[WORDS - 1] & 1 << (BITS - 1);
-            *row = flood(row, free);
-        }
-        let mut grown = true;
-        while grown {
-            grown = false;
-            for y in 1..HEIGHT {
-                grown |= outside.grow(y - 1, y, &free);
-            }
-            for y in (1..HEIGHT).rev() {
-                grown |= outside.grow(y, y - 1, &free);
-            }
-        }
-        outside.invert();
-        *self = outside;
+        self.invert();
+        self.keep_at_border();
+        self.invert();
     }
 
     #[inline]
@@ -190,18 +163,6 @@ impl Mask {
         }
     }
 
-    #[inline]
-    pub fn for_every(&self, every: u32, mut each: impl FnMut(usize)) {
-        let mut count = 0;
-        self.for_each(|at| {
-            count += 1;
-            if count % every == 0 {
-                each(at);
-            }
-        });
-    }
-
-    /// None of an empty set.
     pub fn moments(&self) -> Option<Moments> {
         let mut sums = [0u64; 6];
         self.for_each(|at| {
@@ -224,12 +185,23 @@ pub(crate) fn eight_bits(bytes: [u8; 8]) -> u8 {
     (u64::from_le_bytes(bytes).wrapping_mul(0x0102_0408_1020_4080) >> 56) as u8
 }
 
+/// Each pixel's left and right neighbours.
+fn beside(row: &[Word; WORDS]) -> [[Word; WORDS]; 2] {
+    let left = |word: usize| row[word] << 1 | if word > 0 { row[word - 1] >> (BITS - 1) } else { 0 };
+    let right = |word: usize| row[word] >> 1 | if word + 1 < WORDS { row[word + 1] << (BITS - 1) } else { 0 };
+    [std::array::from_fn(left), std::array::from_fn(right)]
+}
+
+fn widened(row: &[Word; WORDS]) -> [Word; WORDS] {
+    let [left, right] = beside(row);
+    std::array::from_fn(|word| left[word] | row[word] | right[word])
+}
+
 fn three(row: &[Word; WORDS]) -> ([Word; WORDS], [Word; WORDS]) {
+    let [left, right] = beside(row);
     let (mut ones, mut twos) = ([0; WORDS], [0; WORDS]);
     for word in 0..WORDS {
-        let left = row[word] << 1 | if word > 0 { row[word - 1] >> (BITS - 1) } else { 0 };
-        let right = row[word] >> 1 | if word + 1 < WORDS { row[word + 1] << (BITS - 1) } else { 0 };
-        (ones[word], twos[word]) = full_adder(left, row[word], right);
+        (ones[word], twos[word]) = full_adder(left[word], row[word], right[word]);
     }
     (ones, twos)
 }

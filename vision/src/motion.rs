@@ -1,8 +1,5 @@
-//! How an object moves from one picture to the next: one rigid move for all of its pixels, by least squares on the brightness
-//! (Lucas and Kanade 1981), without looking for points.
-//!
-//! The light may change meanwhile, so a common gain is a fourth unknown. Pixels that the move does not explain (a spot of the
-//! background, a reflection) count less and less in each round.
+//! An object's rigid move from one picture to the next, by least squares on the brightness (Lucas and Kanade 1981), with a common gain of
+//! the light. Pixels that the move does not explain (a spot of the background, a reflection) count less in each round.
 
 use crate::frame::{HEIGHT, PIXELS, Plane, Point, WIDTH};
 use crate::mask::Mask;
@@ -44,8 +41,13 @@ impl Flow {
 /// moves of a pixel or two; larger ones come out too small, with the right sign.
 pub fn flow(before: &Plane, now: &Plane, object: &Mask, middle: Point) -> Option<Flow> {
     let mut samples = Samples::EMPTY;
-    let every = object.count() / SAMPLES_MAX as u32 + 1;
-    object.for_every(every, |at| samples.take(before, now, at, middle));
+    let (every, mut number) = (object.count() as usize / SAMPLES_MAX + 1, 0);
+    object.for_each(|at| {
+        number += 1;
+        if number % every == 0 {
+            samples.take(before, now, at, middle);
+        }
+    });
     if samples.count < PIXELS_MIN {
         return None;
     }
@@ -172,6 +174,12 @@ mod tests {
 
     const MIDDLE: Point = Point { x: 150.0, y: 110.0 };
 
+    fn object() -> Mask {
+        let mut object = Mask::EMPTY;
+        object.insert_block(80..240, 60..180);
+        object
+    }
+
     fn draw(moved: Flow, gain: f32, into: &mut Plane) {
         let (sin, cos) = (libm::sinf(moved.turn / ARM_PX), libm::cosf(moved.turn / ARM_PX));
         for (at, level) in into.iter_mut().enumerate() {
@@ -185,16 +193,14 @@ mod tests {
     #[test]
     fn a_move_is_measured_and_a_plain_object_says_nothing() {
         let (mut before, mut now) = (plane(), plane());
-        let mut object = Mask::EMPTY;
-        (60..180).for_each(|y| (80..240).for_each(|x| object.insert(x, y)));
         draw(Flow::default(), 1.0, &mut before);
-        assert_eq!(flow(&plane(), &plane(), &object, MIDDLE), None);
+        assert_eq!(flow(&plane(), &plane(), &object(), MIDDLE), None);
         for (x, y, turn) in
             [(0.0, 0.0, 0.0), (0.5, -0.3, 0.0), (-1.0, 1.5, 0.4), (0.0, 2.0, -1.0), (0.0, 0.0, 0.2)]
         {
             for gain in [1.0, 1.02, 0.98] {
                 draw(Flow { x, y, turn }, gain, &mut now);
-                let found = flow(&before, &now, &object, MIDDLE).unwrap();
+                let found = flow(&before, &now, &object(), MIDDLE).unwrap();
                 let off = found.slip_on(Flow { x, y, turn });
                 assert!(off < 0.15, "{x} {y} {turn} {gain}: {found:?}");
             }
@@ -215,15 +221,13 @@ mod tests {
     #[test]
     fn a_spot_of_what_lies_behind_does_not_move_it() {
         let (mut before, mut now, mut other) = (plane(), plane(), plane());
-        let mut object = Mask::EMPTY;
-        (60..180).for_each(|y| (80..240).for_each(|x| object.insert(x, y)));
         draw(Flow::default(), 1.0, &mut before);
         now.copy_from_slice(&before[..]);
         draw(Flow { x: 2.0, y: -1.5, turn: 0.0 }, 1.0, &mut other);
         for y in 60..90 {
             now[y * WIDTH + 80..y * WIDTH + 150].copy_from_slice(&other[y * WIDTH + 80..y * WIDTH + 150]);
         }
-        let found = flow(&before, &now, &object, MIDDLE).unwrap();
+        let found = flow(&before, &now, &object(), MIDDLE).unwrap();
         assert!(found.slip_on(Flow::default()) < 0.1, "{found:?}");
     }
 }

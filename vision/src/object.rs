@@ -1,15 +1,11 @@
-//! The object behind the skin, and whether it slips (FingerVision 2017, section III).
-//!
-//! An object has the colours of what moved, less those that it now hides, and differs from the remembered scene. Either alone is not
-//! enough: a person behind the skin differs from the scene, and a wall has the colours of a card.
+//! The object behind the skin, and whether it slips (FingerVision 2017, section III): it has the colours of what moved, less those that it
+//! hides, and differs from the remembered scene.
 
 mod axis;
 mod colour;
-mod cut;
 mod ghost;
 mod hand;
 mod model;
-mod movement;
 mod scene;
 
 use crate::frame::{Frame, PIXELS, Plane, Point, WIDTH, plane};
@@ -18,8 +14,7 @@ use crate::rectify::Rectifier;
 
 use self::colour::{BINS, Bins};
 use self::model::{Histogram, ObjectModel};
-use self::movement::Running;
-use self::scene::Scene;
+use self::scene::{Running, Scene};
 
 /// Pixels that differ from the scene are believed to be the scene in one frame of so many while an object is seen.
 const DOUBT_FRAMES: u32 = 32;
@@ -49,7 +44,8 @@ const INSIDE_PX: usize = 10;
 const MOVES_PX: usize = 4;
 /// Reach around an object in which pixels that differ from the scene may be more of it, px.
 const CLOSE_PX: usize = 16;
-
+/// Largest distance from the border of an object that may go on beyond it with colours that are not known yet, px.
+const REACH_PX: usize = 24;
 /// Back projection from which a pixel's colour is the object's, 1 to 255.
 const COLOUR_MIN: u8 = 45;
 /// The least part of the picture that is an object: what is smaller may be a person behind the skin, or a spot in another light.
@@ -72,8 +68,7 @@ pub struct Sighting {
     pub cut: bool,
 }
 
-/// Follows an object.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Tracker {
     bins: Bins,
     scene: Scene,
@@ -83,9 +78,6 @@ pub struct Tracker {
     near: Mask,
     moving: Mask,
     apart: Mask,
-    slip: Mask,
-    bytes: Box<Plane>,
-    held: Box<Plane>,
     lens: Option<Rectifier>,
     frames: u32,
     seen: bool,
@@ -94,31 +86,6 @@ pub struct Tracker {
     grasped: u32,
     is_part: bool,
     ghosts: u32,
-}
-
-impl Default for Tracker {
-    fn default() -> Self {
-        Self {
-            bins: Bins::new(),
-            scene: Scene::new(),
-            movement: Running::new(),
-            model: ObjectModel::new(),
-            object: Mask::EMPTY,
-            near: Mask::EMPTY,
-            moving: Mask::EMPTY,
-            apart: Mask::EMPTY,
-            slip: Mask::EMPTY,
-            bytes: plane(),
-            held: plane(),
-            lens: None,
-            frames: 0,
-            seen: false,
-            middle: None,
-            grasped: 0,
-            is_part: false,
-            ghosts: 0,
-        }
-    }
 }
 
 impl Tracker {
@@ -143,23 +110,20 @@ impl Tracker {
         &self.moving
     }
 
-    pub const fn slip(&self) -> &Mask {
-        &self.slip
-    }
-
     /// Takes a frame and its grey plane. With `learn`, the object's colours are learned from what moves: until the hand
     /// closes. What moves in `skin`, where the markers are, is no slip. None while there is no object.
     pub fn step(&mut self, frame: &Frame, grey: &Plane, skin: &Mask, learn: bool) -> Option<Sighting> {
         self.frames = self.frames.saturating_add(1);
-        self.movement.step(grey, &mut self.bytes);
-        self.moving.pack(&self.bytes);
+        let mut bytes = plane();
+        self.movement.step(grey, &mut bytes);
+        self.moving.pack(&bytes);
         if self.frames == 1 {
-            self.scene.follow(frame, &self.held, 0);
+            self.scene.follow(frame, &Mask::EMPTY, 0);
         }
         self.scene.follow_light(grey, &self.near);
-        self.scene.differs(frame, &mut self.bytes);
+        self.scene.differs(frame, &mut bytes);
         let mut differs = Mask::EMPTY;
-        differs.pack(&self.bytes);
+        differs.pack(&bytes);
         if learn {
             self.learn(frame, &differs);
         }
@@ -167,7 +131,8 @@ impl Tracker {
             self.apart.clone_from(&differs);
         }
         let apart = differs.clone();
-        self.project(frame, &mut differs);
+        let is_its = |red, green, blue| self.model.value(self.bins.of([red, green, blue])) >= COLOUR_MIN;
+        differs.keep(frame, is_its);
         // Specks and lines of a pixel go, then noise (erosion 2), and what the markers cut out is closed (dilation 7, and back).
         differs.majority();
         differs.erode(2);
@@ -210,10 +175,10 @@ impl Tracker {
             self.near = Mask::EMPTY;
         }
         self.remember(frame, &apart);
-        self.slip.clone_from(&self.object);
-        self.slip.intersect(&self.moving);
-        self.slip.subtract(skin);
-        let slip_px = moments.map_or(0, |moments| spread_count(&self.slip, &moments));
+        let mut slip = self.object.clone();
+        slip.intersect(&self.moving);
+        slip.subtract(skin);
+        let slip_px = moments.map_or(0, |moments| spread_count(&slip, &moments));
         let ghost =
             learn && self.seen && slip_px < STILL_PX && ghost::is_one(&self.object, skin, frame, &self.scene);
         self.ghosts = if ghost { self.ghosts + 1 } else { 0 };
@@ -231,16 +196,15 @@ impl Tracker {
         unknown.unite(&self.object);
         let whole_percent = if self.is_part { WHOLE_PERCENT.1 } else { WHOLE_PERCENT.0 };
         self.is_part = 100 * self.object.count() < whole_percent * self.grasped;
-        let cut = self.is_part || cut::is_cut(&self.object, learn.then_some(&unknown));
+        let cut = self.is_part || is_cut(&self.object, learn.then_some(&unknown));
         Some(Sighting { moments, angle_rad: rims.angle, rims: rims.share, area, slip_px, cut })
     }
 
     fn lay_ghost(&mut self, frame: &Frame) {
         self.near.invert();
-        self.near.unpack(&mut self.held);
-        self.scene.follow(frame, &self.held, 0);
+        self.scene.follow(frame, &self.near, 0);
         self.model.forget();
-        (self.object, self.near, self.slip) = (Mask::EMPTY, Mask::EMPTY, Mask::EMPTY);
+        (self.object, self.near) = (Mask::EMPTY, Mask::EMPTY);
         (self.ghosts, self.seen, self.middle) = (0, false, None);
     }
 
@@ -260,25 +224,17 @@ impl Tracker {
         let (mut moving, mut hidden): (Histogram, Histogram) = ([0; BINS], [0; BINS]);
         new.for_each(|at| {
             let count = |count: &mut u16| *count = count.saturating_add(1);
-            count(&mut moving[self.bins.of(frame.red[at], frame.green[at], frame.blue[at])]);
-            let (red, green, blue) = self.scene.colour(at);
-            count(&mut hidden[self.bins.of(red, green, blue)]);
+            count(&mut moving[self.bins.of(frame.colour(at))]);
+            count(&mut hidden[self.bins.of(self.scene.colour(at))]);
         });
         // A moving background hides colours of its own: half of their usual share is taken away too.
         let mut scene: Histogram = [0; BINS];
-        (0..PIXELS).step_by(SAMPLE).for_each(|at| {
-            let (red, green, blue) = self.scene.colour(at);
-            scene[self.bins.of(red, green, blue)] += 1;
-        });
+        (0..PIXELS).step_by(SAMPLE).for_each(|at| scene[self.bins.of(self.scene.colour(at))] += 1);
         let count = new.count();
         for (hidden, scene) in hidden.iter_mut().zip(scene) {
             *hidden = (*hidden).max((u32::from(scene) * count / (2 * PIXELS / SAMPLE) as u32) as u16);
         }
         self.model.learn(&moving, &hidden);
-    }
-
-    fn project(&self, frame: &Frame, mask: &mut Mask) {
-        mask.keep(frame, |red, green, blue| self.model.value(self.bins.of(red, green, blue)) >= COLOUR_MIN);
     }
 
     /// Lets the scene follow what is not hidden by the object and a margin around it. What differs may be an object that is
@@ -297,11 +253,24 @@ impl Tracker {
             hidden.unite(&doubtful);
         }
         hidden.dilate(3);
-        hidden.unpack(&mut self.held);
-        self.scene.follow(frame, &self.held, SCENE_RATE);
+        self.scene.follow(frame, &hidden, SCENE_RATE);
     }
 }
 
+/// Whether an object goes on beyond the picture's border: it reaches the border, or what differs from the scene leads on to it.
+fn is_cut(object: &Mask, unknown: Option<&Mask>) -> bool {
+    let mut grown = object.clone();
+    if let Some(unknown) = unknown.filter(|_| object.comes_within(REACH_PX)) {
+        for _ in 0..REACH_PX {
+            grown.dilate(1);
+            grown.intersect(unknown);
+        }
+        grown.unite(object);
+    }
+    grown.comes_within(1)
+}
+
+/// Moving pixels at both ends of an object: four times those of the quieter end, at most all.
 fn spread_count(slip: &Mask, object: &Moments) -> u32 {
     let (sin, cos) = (libm::sinf(object.angle_rad()), libm::cosf(object.angle_rad()));
     let (mut here, mut there) = (0u32, 0u32);

@@ -1,6 +1,4 @@
-//! Undoes a fisheye, place by place: no picture is made anew, for only markers and the object's pixels need it.
-//!
-//! The lens is equidistant, r = f theta, which one number describes.
+//! Undoes an equidistant fisheye, r = f theta, place by place: only markers and the object's pixels need it.
 
 use crate::force::MIDDLE;
 use crate::frame::{PIXELS, Point, WIDTH};

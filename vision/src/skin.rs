@@ -1,7 +1,4 @@
-//! How the skin under an object moves from one picture to the next: what sticks to it moves as it does.
-//!
-//! The contact carries the skin along most in its middle, and less and less around it, so the markers nearest to the object's
-//! middle count most.
+//! The skin's move under an object from one picture to the next. The markers nearest to the object's middle count most.
 
 use crate::frame::Point;
 use crate::markers::Marker;

@@ -1,8 +1,7 @@
-//! The tests of vision but for that of the allocator, one program: `--test all markers` runs those of a file.
+//! The tests of markers, and of recordings of the real sensor; `lab` scores the whole on drawn sessions.
 
 mod common;
 
 mod markers;
-mod object;
 mod real_markers;
 mod real_object;

@@ -10,10 +10,10 @@
 
 #[path = "../black_box.rs"]
 mod black_box;
+#[path = "../board.rs"]
+mod board;
 #[path = "../bridge.rs"]
 mod bridge;
-#[path = "../button.rs"]
-mod button;
 #[path = "../clock.rs"]
 mod clock;
 #[path = "../control.rs"]
@@ -34,12 +34,6 @@ mod mail;
 mod scan;
 #[path = "../supply.rs"]
 mod supply;
-#[path = "../switches.rs"]
-mod switches;
-#[path = "../vibrator.rs"]
-mod vibrator;
-#[path = "../watchdog.rs"]
-mod watchdog;
 
 use core::hint::black_box;
 

@@ -1,11 +1,12 @@
-//! Answers to commands.
+//! Answers to commands, identity of the board, and what it kept over a reset.
 
 use heapless::Vec;
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
-use super::{About, Last, NetworkState, samples};
+use super::{NetworkState, samples};
 use crate::channel::COUNT;
+use crate::words::{Fault, Kept};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum Refusal {
@@ -13,12 +14,9 @@ pub enum Refusal {
         min: i32,
         max: i32,
     },
-    /// A finger that is loaded cannot be zeroed.
     Loaded,
-    /// The sensor that it needs gives no number.
     SensorLost,
     WearerActive,
-    /// There is no setting with this number: the board's image is another one.
     UnknownSetting,
     /// The command could move the hand or bears on its safety, and there is no consent.
     NotArmed,
@@ -43,7 +41,6 @@ pub const SETTINGS_PER_ANSWER: usize = 16;
 #[allow(clippy::large_enum_variant, reason = "there is no heap to put the large one on")]
 pub enum Answer {
     Done,
-    /// The command was not carried out, and nothing has changed.
     Refused(Refusal),
     /// To [`Down::Get`](super::Down::Get) and [`Down::Set`](super::Down::Set): the value that is in force now.
     Setting(Setting),
@@ -52,12 +49,78 @@ pub enum Answer {
     /// To [`Down::Samples`](super::Down::Samples): the last sample of every channel, in the order of
     /// [`CHANNELS`](crate::channel::CHANNELS).
     Samples(#[serde(with = "samples")] [u16; COUNT]),
-    /// To [`Down::Network`](super::Down::Network).
     Network(NetworkState),
     /// To [`Down::Hello`](super::Down::Hello): the number that [`Down::Open`](super::Down::Open) must return.
     Nonce(u32),
-    /// To [`Down::About`](super::Down::About).
     About(About),
-    /// To [`Down::Last`](super::Down::Last).
     Last(Last),
+}
+
+pub const SETTINGS_MAX: usize = 64;
+pub const KEPT_MAX: usize = 320;
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub enum ResetCause {
+    #[default]
+    PowerOn,
+    Pin,
+    Software,
+    Panic,
+    Watchdog,
+    Other,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub struct Identity {
+    /// The first bytes of the image's build identifier, which the linker makes from its contents. 0: the host's own build.
+    pub build: u64,
+    /// The chip's unique number. 0: no chip.
+    pub chip: [u32; 3],
+    pub reset: ResetCause,
+}
+
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub struct About {
+    pub identity: Identity,
+    /// The [`SCHEMA`](super::SCHEMA) that its messages follow.
+    pub schema: u64,
+    pub frames: u32,
+    pub settings: Vec<Setting, SETTINGS_MAX>,
+}
+
+/// A record that was restored at this start, as it lies in flash.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub struct Restored {
+    pub kept: Kept,
+    pub payload: Vec<u8, KEPT_MAX>,
+}
+
+impl Restored {
+    /// The message of a record; None if it has more bytes than [`KEPT_MAX`].
+    pub fn of(kept: Kept, payload: &[u8]) -> Option<Self> {
+        Some(Self { kept, payload: Vec::from_slice(payload).ok()? })
+    }
+}
+
+pub const PIECE_MAX: usize = 256;
+
+pub const WHY_MAX: usize = 48;
+
+/// A piece of the board's last messages before a fault ended its last run.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub struct Last {
+    /// The fault. None: nothing is kept.
+    pub after: Option<Fault>,
+    /// Place of the fault in ASCII: source line of a panic, address of a core fault. Empty: unknown.
+    pub why: Vec<u8, WHY_MAX>,
+    pub length: u16,
+    pub from: u16,
+    /// Encoded frames as they went up the line, the oldest first. The oldest of all may lack its beginning.
+    pub bytes: Vec<u8, PIECE_MAX>,
+}
+
+impl Last {
+    pub const fn nothing(from: u16) -> Self {
+        Self { after: None, why: Vec::new(), length: 0, from, bytes: Vec::new() }
+    }
 }

@@ -13,7 +13,6 @@ pub const DRIVE_HOLD_MAX_MS: u16 = 250;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum Down {
-    /// Answer with [`Answer::Done`](super::Answer::Done).
     Ping,
     /// Drive the motor for `hold_ms`, at most [`DRIVE_HOLD_MAX_MS`]; sent again and again while a key is held.
     Drive {
@@ -21,27 +20,22 @@ pub enum Down {
         hold_ms: u16,
     },
     Set(Setting),
-    /// Begin a behaviour; one that is under way ends.
     Begin(Behaviour),
     /// Take the force sensor's readings as zero. Refused while the finger is loaded.
     Zero,
-    /// Answer with [`Answer::Samples`](super::Answer::Samples).
     Samples,
     /// Codes of a teacher's picture (v1, v2; Tada 2006, equations 1 and 2). Some 30 times a second.
     Teach {
         codes: Codes,
         age_ms: u16,
     },
-    /// Answer with [`Answer::Network`](super::Answer::Network).
     Network,
     Forget,
     /// Save the network's weights now, without waiting for rest.
     Save,
-    /// Answer with the [`Answer::Setting`](super::Answer::Setting) of this number.
     Get(u8),
     /// Answer with the [`Answer::Settings`](super::Answer::Settings) from this number on, in the order of their numbers.
     Settings(u8),
-    /// Answer with an [`Answer::Nonce`](super::Answer::Nonce).
     Hello,
     /// Open a session with the last [`Answer::Nonce`](super::Answer::Nonce). From here on the numbers of frames only rise.
     Open {
@@ -50,15 +44,12 @@ pub enum Down {
     /// Calibrate the myosensors to the wearer: three prompts of 5 s come up as [`EventKind::Calibration`](super::EventKind::Calibration), then the result.
     /// Meanwhile the muscles move nothing. Refused while something is held.
     CalibrateEmg,
-    /// Answer with [`Answer::About`](super::Answer::About).
     About,
     /// Stream more messages for `hold_s` seconds; repeat it to go on. Each one replaces the one before.
     Stream {
         /// [`Up::Raw`](super::Up::Raw): every frame as it was sampled, and [`Up::Taken`](super::Up::Taken): every command.
         raw: bool,
-        /// [`Up::Senses`](super::Up::Senses).
         senses: bool,
-        /// For how long, s. 0 ends it.
         hold_s: u16,
     },
     End,

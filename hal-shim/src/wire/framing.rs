@@ -3,10 +3,9 @@
 use cobs::{DecodeResult, DecoderState};
 use crc::{CRC_32_ISO_HDLC, Crc};
 use postcard::de_flavors::crc::from_bytes_u32;
-use postcard::ser_flavors::{Flavor, crc::CrcModifier};
+use postcard::ser_flavors::{Cobs, Flavor, Slice};
 use serde::{Serialize, de::DeserializeOwned};
 
-use super::stuffing::Stuffed;
 use super::{FRAME_MAX, VERSION};
 
 static CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
@@ -33,10 +32,13 @@ pub enum BadFrame {
 ///
 /// None if the buffer is too small; [`FRAME_MAX`] bytes are always enough.
 pub fn encode<'a, T: Serialize>(sequence: u16, message: &T, buffer: &'a mut [u8]) -> Option<&'a mut [u8]> {
-    let mut serializer =
-        postcard::Serializer { output: CrcModifier::new(Stuffed::new(buffer), CRC.digest()) };
-    (VERSION, sequence, message).serialize(&mut serializer).ok()?;
-    serializer.output.finalize().ok()
+    let mut plain = [0; FRAME_MAX];
+    let length = postcard::to_slice(&(VERSION, sequence, message), &mut plain).ok()?.len();
+    let crc = CRC.checksum(plain.get(..length)?);
+    plain.get_mut(length..length + 4)?.copy_from_slice(&crc.to_le_bytes());
+    let mut stuffed = Cobs::try_new(Slice::new(buffer)).ok()?;
+    stuffed.try_extend(plain.get(..length + 4)?).ok()?;
+    stuffed.finalize().ok()
 }
 
 /// Decodes bytes as they come into messages. It skips bad frames and reports each to the caller.

@@ -93,18 +93,15 @@ mod tests {
 
     #[test]
     fn every_frame_survives_its_bytes() {
-        let mut state = 1_u32;
-        let mut sample = || {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            (state >> 16) as u16 & MASK
-        };
         let mut raw = Raw::default();
+        // Odd steps reach every 14-bit sample.
         for round in 0..1_000 {
+            let sample = |n: usize| (round as usize * 1_297 + n * 5_101) as u16 & MASK;
             let frames: [Frame; FRAMES_PER_RAW] = core::array::from_fn(|place| Frame {
-                pvdf: core::array::from_fn(|_| if round == 0 { MASK } else { sample() }),
-                switch_a: if round == 0 { MASK } else { sample() },
-                switch_b: if round == 0 { MASK } else { sample() },
-                valid: sample() % 2 == 0,
+                pvdf: core::array::from_fn(|film| sample(17 * place + film)),
+                switch_a: sample(17 * place + 12),
+                switch_b: if place == 0 { MASK } else { sample(17 * place + 13) },
+                valid: sample(place).is_multiple_of(2),
                 sequence: round * FRAMES_PER_RAW as u32 + place as u32,
             });
             frames.iter().for_each(|frame| raw.put(frame));

@@ -1,18 +1,17 @@
-//! The message of each slow frame (12.5 ms, 80 a second) with all its decisions; and the network's state.
+//! The messages of each slow frame (12.5 ms, 80 a second) with all its decisions; and the network's state.
 
 use heapless::Vec;
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
-use super::TickRecord;
+use super::{TickRecord, samples};
 use crate::behaviour::Behaviour;
-use crate::channel::{FRAMES_PER_SLOW_FRAME, PVDF_COUNT, STRAIN_COUNT};
+use crate::channel::{COUNT, FRAMES_PER_SLOW_FRAME, PVDF_COUNT, STRAIN_COUNT};
 use crate::detector::{DetectorId, Evidence};
 use crate::words::{Codes, GripMode, Line, NoLesson};
 
 /// Inputs of the network: films, then strain gauges.
 pub const RECEPTORS: usize = PVDF_COUNT + STRAIN_COUNT;
-/// Outputs of the network: relative motion (o1) and direction (o2).
 pub const NETWORK_OUTPUTS: usize = 2;
 
 /// The force sensor's readings of a slow frame (Prosthesis, section 4).
@@ -43,15 +42,12 @@ impl Forces {
 
 pub const DETECTORS_MAX: usize = 8;
 
-/// Decisions and forces of a slow frame (12.5 ms).
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Slow {
     /// Sequence number of its last frame.
     pub frame: u32,
-    /// Its 25 ticks, the oldest first.
     pub ticks: [TickRecord; FRAMES_PER_SLOW_FRAME as usize],
     pub mode: GripMode,
-    /// Forces, None while the force sensor gives no number.
     pub forces: Option<Forces>,
     pub s2_permille: u16,
     /// Envelopes above rest, mV. None while the sensor gives no number.
@@ -61,7 +57,6 @@ pub struct Slow {
     pub wearer_active: bool,
     /// Codes that the network is learning. None: no lesson.
     pub lesson: Option<Codes>,
-    /// Each detector's last conclusion, believed or not.
     pub evidence: Vec<(DetectorId, Evidence), DETECTORS_MAX>,
     /// Checksum ([`SamplesSum`](super::SamplesSum)) of every valid sample of the slow frame's ticks, to compare the
     /// input of board and replay.
@@ -83,4 +78,16 @@ pub struct NetworkState {
     /// Age of the teacher's newest picture, ms; None before the first.
     pub teacher_age_ms: Option<u16>,
     pub no_lesson: Option<NoLesson>,
+}
+
+/// Readings of every sensor, 80 times a second, on request: see [`Down::Stream`](super::Down::Stream).
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub struct Senses {
+    pub frame: u32,
+    /// The last sample of every channel, in the order of [`CHANNELS`](crate::channel::CHANNELS): strain gauges, quadrants,
+    /// taxels, myosensors, opening and motor current are as old as their slot.
+    #[serde(with = "samples")]
+    pub samples: [u16; COUNT],
+    /// The vibration envelope of each film, in samples (14 bits).
+    pub films: [u16; PVDF_COUNT],
 }

@@ -13,14 +13,12 @@ use crate::words::{Calibration, Cause, Consent, Fault, GripMode, Kept, MotorStop
 pub struct Counters {
     pub frames: u32,
     pub frames_lost: u32,
-    /// Number of overruns of the converter or its DMA. Each restarted them.
     pub overruns: u32,
     pub ticks: u32,
     /// Ticks that ended after the next frame had begun.
     pub ticks_late: u32,
     /// Telemetry messages dropped so as not to delay control.
     pub telemetry_dropped: u32,
-    /// Frames received that were no valid message.
     pub bad_frames: u32,
     /// Received frames that exceeded 500 commands a second: neither executed nor answered.
     pub commands_skipped: u32,
@@ -33,7 +31,6 @@ pub struct Counters {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Event {
-    /// Sequence number of the frame in which it happened.
     pub frame: u32,
     pub kind: EventKind,
 }
@@ -45,7 +42,6 @@ pub enum EventKind {
         to: GripMode,
         cause: Cause,
     },
-    /// A fault began, or a sensor or ability is back.
     Fault(Fault),
     /// A stroke ended with this estimate, from which S2 follows.
     Stroke {
@@ -61,39 +57,31 @@ pub enum EventKind {
     /// From here on the line's commands are carried out without consent (true), or with it only (false). Told at the start
     /// if it is so, and when the setting changes.
     LineTrusted(bool),
-    /// Prompt or result of a calibration of the myosensors.
     Calibration(Calibration),
     /// From here on the reflex works without myosensors (true), or only with both (false). Told at the start if it is so, and
     /// when the setting changes.
     NoWearer(bool),
-    /// A behaviour began (None), or ended.
     Behaviour(Behaviour, Option<Ending>),
     /// The motor is stopped, for this reason, or may be driven again (None).
     Motor(Option<MotorStop>),
-    /// The reflex begins a pulse, for these reasons.
     Pulse {
         /// The margin of the last slow frame, mN ([`Forces::margin_mn`](super::Forces::margin_mn)). None where there was no ratio.
         margin_mn: Option<i32>,
-        /// The detectors that say slip or warn of it.
         said: DetectorSet,
-        /// Those of them that are believed.
         believed: DetectorSet,
     },
 }
 
-/// From the board.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 #[allow(clippy::large_enum_variant, reason = "there is no heap to put the large one on")]
 pub enum Up {
     Hello {
-        /// Samples a second on every direct pin.
         frame_hz: u16,
         /// The fault that ended the run before. None: it was switched on.
         after: Option<Fault>,
     },
     Slow(Slow),
     Event(Event),
-    /// The counters, ten times a second.
     Counters(Counters),
     Answer {
         of: u16,
@@ -101,9 +89,7 @@ pub enum Up {
         frame: u32,
         answer: Answer,
     },
-    /// A record was saved and outlives a power cut.
     Saved {
-        /// Sequence number of the last frame before it was saved.
         frame: u32,
         kept: Kept,
     },

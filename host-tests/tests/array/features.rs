@@ -1,5 +1,3 @@
-//! Features of the array against the oracle.
-
 use proptest::prelude::*;
 use tenax_hal_shim::channel::SAMPLE_MAX;
 use tenax_logic::array::covariance::SlidingCovariance;
@@ -25,7 +23,7 @@ proptest! {
         gone in 0..200usize,
     ) {
         let config = PreprocessorConfig { lag, ..PreprocessorConfig::DEFAULT };
-        let mut preprocessor: Preprocessor = Preprocessor::new(config);
+        let mut preprocessor = Preprocessor::new(config);
         let ready_after = SPECTRUM_WINDOW.max(usize::from(lag) + 10);
         for (n, frame) in frames.iter().enumerate() {
             let mut reading = some(frame);
@@ -56,7 +54,7 @@ proptest! {
         frames in prop::collection::vec(alive(), SPECTRUM_WINDOW..120),
     ) {
         let config = PreprocessorConfig::DEFAULT;
-        let mut preprocessor: Preprocessor = Preprocessor::new(config);
+        let mut preprocessor = Preprocessor::new(config);
         let mut last = None;
         for frame in &frames {
             last = preprocessor.push(&some(frame)).copied();
@@ -87,41 +85,10 @@ proptest! {
         }
     }
 
-    /// To its neighbours an element without readings holds still, and then goes on from where it was.
-    #[test]
-    fn an_element_without_readings_adds_nothing_to_the_spectrum(
-        frames in prop::collection::vec(alive(), 100..140),
-        dead in 0..ELEMENTS,
-        dies_at in 45..60usize,
-        back_at in 61..95usize,
-    ) {
-        let mut with_gap: Preprocessor = Preprocessor::new(PreprocessorConfig::DEFAULT);
-        let mut held: Preprocessor = Preprocessor::new(PreprocessorConfig::DEFAULT);
-        let held_at = frames[dies_at - 1][dead];
-        for (n, frame) in frames.iter().enumerate() {
-            let (mut reading, mut still) = (some(frame), *frame);
-            if (dies_at..back_at).contains(&n) {
-                reading[dead] = None;
-                still[dead] = held_at;
-            } else if n >= back_at {
-                // A shifted sample below zero cannot be given.
-                let shifted = i32::from(frame[dead]) + i32::from(held_at) - i32::from(frames[back_at][dead]);
-                let Ok(shifted) = u16::try_from(shifted) else { break };
-                still[dead] = shifted;
-            }
-            let [found, expected] = [with_gap.push(&reading), held.push(&some(&still))].map(|f| f.copied());
-            if let (Some(found), Some(expected)) = (found, expected) {
-                // Bin 0 alone knows what the element missed.
-                let bins = COVARIANCES + 1..PAPER_FEATURES;
-                prop_assert_eq!(&found[bins.clone()], &expected[bins]);
-            }
-        }
-    }
-
     #[test]
     fn with_too_many_dead_elements_there_are_no_features(frames in readings(60..100), dead_max in 0..=10u8) {
         let config = PreprocessorConfig { dead_max, ..PreprocessorConfig::DEFAULT };
-        let mut preprocessor: Preprocessor = Preprocessor::new(config);
+        let mut preprocessor = Preprocessor::new(config);
         for (n, reading) in frames.iter().enumerate() {
             let dead = reading.iter().filter(|sample| sample.is_none()).count();
             let ready = n + 1 >= SPECTRUM_WINDOW && dead <= usize::from(dead_max);
@@ -134,12 +101,12 @@ proptest! {
         past in readings(100..300),
         frames in prop::collection::vec(alive(), FULL_AFTER + 1..90),
     ) {
-        let mut old: Preprocessor = Preprocessor::default();
+        let mut old = Preprocessor::default();
         // Whole turns of the spectrum: the rounding of a bin's parts depends on its phase.
         for reading in past.chunks_exact(SPECTRUM_WINDOW).flatten() {
             old.push(reading);
         }
-        let mut fresh: Preprocessor = Preprocessor::default();
+        let mut fresh = Preprocessor::default();
         let (mut from_old, mut from_fresh) = (None, None);
         for frame in &frames {
             from_old = old.push(&some(frame)).copied();
@@ -161,7 +128,7 @@ proptest! {
 #[test]
 fn the_largest_changes_of_a_converter_stay_in_range() {
     for apart in [false, true] {
-        let mut preprocessor: Preprocessor = Preprocessor::default();
+        let mut preprocessor = Preprocessor::default();
         let mut most = [0; FEATURES];
         for n in 0..400 {
             let reading: Reading = std::array::from_fn(|element| {
@@ -191,10 +158,10 @@ fn the_largest_changes_of_a_converter_stay_in_range() {
 #[test]
 fn the_covariance_does_not_overflow() {
     const N: usize = COVARIANCE_WINDOW;
-    let d_max = i64::from(SlidingCovariance::<N>::D_MAX);
+    let d_max = i64::from(SlidingCovariance::D_MAX);
     let largest = d_max * d_max * N as i64;
     assert!(largest < i64::from(i32::MAX) && 4 * largest > i64::from(i32::MAX));
-    let mut covariance = SlidingCovariance::<N>::default();
+    let mut covariance = SlidingCovariance::default();
     for (difference, size) in [(i32::MIN, d_max), (i32::MAX, d_max - 1), (i32::MAX, d_max - 1)] {
         (0..N).for_each(|_| covariance.push(&[difference; ELEMENTS]));
         assert!(covariance.entries().iter().all(|&entry| i64::from(entry) == size * size * N as i64));

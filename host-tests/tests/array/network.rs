@@ -1,12 +1,9 @@
-//! The quantised network against the same in 64 bits.
-
 use proptest::prelude::*;
 use tenax_logic::array::{FEATURES, HIDDEN, Layer, Mlp};
 
 const H1: usize = HIDDEN[0];
 const H2: usize = HIDDEN[1];
 
-/// Weights, bias and shift of a layer.
 type Plain<const IN: usize, const OUT: usize> = ([[i16; IN]; OUT], [i32; OUT], u32);
 
 fn layer<const IN: usize, const OUT: usize>(plain: &Plain<IN, OUT>) -> Layer<IN, OUT> {

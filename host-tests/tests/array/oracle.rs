@@ -6,10 +6,8 @@ use tenax_hal_shim::channel::{ARRAY, CHANNELS, sample_from_mv};
 use tenax_logic::array::structure::{LAGS, WINDOWS};
 use tenax_logic::array::{BINS, COVARIANCE_WINDOW, COVARIANCES, ELEMENTS, SPECTRUM_WINDOW};
 
-/// Full scale of a difference, samples.
 const D_MAX: i64 = 1 << 13;
 
-/// The covariances of the last `COVARIANCE_WINDOW` differences, samples^2.
 pub fn covariances(readings: &[[u16; ELEMENTS]]) -> [i64; COVARIANCES] {
     let last = &readings[readings.len() - COVARIANCE_WINDOW - 1..];
     let difference = |frame: usize, element: usize| {
@@ -23,7 +21,6 @@ pub fn covariances(readings: &[[u16; ELEMENTS]]) -> [i64; COVARIANCES] {
     std::array::from_fn(|n| entry(pairs[n]))
 }
 
-/// Magnitudes of the transform of the last `SPECTRUM_WINDOW` sums above rest, samples.
 pub fn magnitudes(readings: &[[u16; ELEMENTS]]) -> [f64; BINS] {
     let rest = f64::from(sample_from_mv(CHANNELS[ARRAY].rest_mv));
     let last = &readings[readings.len() - SPECTRUM_WINDOW..];
@@ -57,8 +54,7 @@ pub fn structures(readings: &[[u16; ELEMENTS]]) -> [[i64; WINDOWS]; LAGS.len()] 
     LAGS.map(|lag| windows.clone().map(|window| window.map(|ago| of(lag, ago)).sum()))
 }
 
-/// `log2(1 + x / knee)` as straight lines between powers of two of `x + knee` in units of the knee, which has to be a
-/// power of two itself, in units of 2^-9.
+/// `log2(1 + x / knee)` as straight lines between powers of two, in units of 2^-9; the knee is a power of two.
 pub fn compressed(x: f64, knee: u32) -> f64 {
     let ratio = 1.0 + x / f64::from(knee);
     let whole = ratio.log2().floor();

@@ -1,5 +1,3 @@
-//! Structure functions against the oracle.
-
 use proptest::prelude::*;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
@@ -56,7 +54,6 @@ proptest! {
     }
 }
 
-/// Elements that tremble independently by up to `size` samples.
 fn trembling(random: &mut ChaCha8Rng, frames: usize, size: i32) -> Vec<Reading> {
     let mut frame = || std::array::from_fn(|_| Some((4_000 + random.random_range(-size..=size)) as u16));
     (0..frames).map(|_| frame()).collect()
@@ -64,7 +61,6 @@ fn trembling(random: &mut ChaCha8Rng, frames: usize, size: i32) -> Vec<Reading> 
 
 #[test]
 fn the_quiet_level_is_the_noise_and_outlasts_a_slip_and_an_element() {
-    println!("seed 5");
     let mut random = ChaCha8Rng::seed_from_u64(5);
     assert_eq!(structure_of(&trembling(&mut random, 33, 3)).quiet(), u32::MAX, "nothing is known yet");
     let noise = trembling(&mut random, 200, 3);

@@ -4,7 +4,7 @@ use tenax_logic::hebbian::{Activation, Activations, Code, Config, RECEPTORS};
 
 use super::map::{Fate, UNSEEN, ask, fate, learned, teach};
 use super::oracle::weights_of;
-use super::task::{Finger, Moment, OFFSET, VIBRATION};
+use super::task::{Finger, Moment};
 
 fn felt_through(trial: &[Moment], change: impl Fn(&mut [Activation; RECEPTORS])) -> Vec<Moment> {
     trial
@@ -15,28 +15,6 @@ fn felt_through(trial: &[Moment], change: impl Fn(&mut [Activation; RECEPTORS]))
             Moment { felt: Activations::new(felt), ..*moment }
         })
         .collect()
-}
-
-/// The correlation of a constant receptor is the mean of v. With a balanced teacher r suppresses the offset, the more the smaller
-/// delta is. A one-sided teacher makes it the best correlation of all, and r strengthens it.
-#[test]
-fn r_suppresses_an_offset_only_if_the_teacher_is_balanced() {
-    let mut balanced = Finger::new(1).lesson();
-    let one_sided: Vec<_> = balanced.iter().filter(|m| m.seen == [Code::Plus; 2]).copied().collect();
-    // A third of the lowering is not seen: the mean of v1 is -0.09.
-    let mut n = 0;
-    balanced.retain(|m| {
-        n += 1;
-        m.seen != [Code::Plus, Code::Minus] || n % 3 > 0
-    });
-    let [balanced, one_sided] = [balanced, one_sided].map(|lesson| {
-        [3_000_000, 300_000, 10_000].map(|delta_ppm| {
-            let weights = weights_of(&learned(&Config { delta_ppm, ..Config::default() }, &lesson.repeat(5)));
-            weights[0][OFFSET].abs() / weights[0].iter().map(|w| w.abs()).sum::<f64>()
-        })
-    });
-    assert!(balanced.is_sorted_by(|a, b| a > b) && balanced[2] < 0.6 * balanced[0], "{balanced:?}");
-    assert!(one_sided.is_sorted() && one_sided[2] > 1.5 * one_sided[0], "{one_sided:?}");
 }
 
 /// Films die after learning: each takes its part and no more, nothing is said that is not so, and learning goes on.
@@ -60,37 +38,6 @@ fn a_receptor_that_dies_takes_only_its_part() {
     teach(&mut network, &config, &dead(&lesson, 6));
     let after = ask(&weights_of(&network), &six_dead);
     assert!(after.o1_slip > before.o1_slip && after.slip_seen >= before.slip_seen);
-}
-
-/// A film's cable exchanged with that of the gauge that says most about direction, and the plugs of all films and gauges.
-#[test]
-fn exchanged_cables_are_learned_again() {
-    let finger = Finger::new(1);
-    let config = Config::default();
-    let before = learned(&config, &finger.lesson());
-    let weights = weights_of(&before);
-    let strongest = |row: &[f64; RECEPTORS], from: std::ops::Range<usize>| {
-        from.max_by(|&a, &b| row[a].abs().total_cmp(&row[b].abs())).unwrap()
-    };
-    let (film, gauge) = (strongest(&weights[0], 0..VIBRATION), strongest(&weights[1], VIBRATION..RECEPTORS));
-    type Exchange<'a> = &'a dyn Fn(&mut [Activation; RECEPTORS]);
-    let all: [(&str, Exchange<'_>); 2] =
-        [("one cable", &|felt| felt.swap(film, gauge)), ("all cables", &|felt| felt.rotate_left(VIBRATION))];
-    for (name, exchange) in all {
-        let trial = felt_through(&finger.trial(UNSEEN), exchange);
-        let mut network = before.clone();
-        // The exchanged gauge still has the film's weight, or the network is useless.
-        let is_old = |weights: &[[f64; RECEPTORS]; 2]| {
-            weights[1][film].abs() < weights[1][gauge].abs() && name == "one cable"
-                || fate(weights, &trial) != Fate::Useful
-        };
-        assert!(is_old(&weights), "{name}: nothing to learn");
-        let learned = (100..130).any(|seed| {
-            teach(&mut network, &config, &felt_through(&finger.trial(seed), exchange));
-            !is_old(&weights_of(&network))
-        });
-        assert!(learned, "{name}: not within 30 trials");
-    }
 }
 
 /// A teacher that says the opposite turns a settled weight round in `ln 2 / beta`, 69 s at the default.

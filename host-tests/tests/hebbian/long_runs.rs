@@ -4,14 +4,14 @@ use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use tenax_logic::hebbian::{Activation, Activations, Code, Codes, Config, FingertipNetwork, RECEPTORS, Rule};
 
-use super::oracle::{FULL_SCALE, Rates, Reference, exact, weights_of};
+use super::oracle::{FULL_SCALE, Rates, Reference, exact, outputs, weights_of};
 use super::task::Finger;
 
 const UPDATES: usize = 1_000_000;
 
 /// Largest errors of weights (relative to full scale) and of outputs, sampled every 97 updates and at the end.
 fn worst(config: Config, mut input: impl FnMut(usize) -> (Activations<RECEPTORS>, Codes)) -> (f64, f64) {
-    let rule = Rule::new(&config).unwrap();
+    let rule = Rule::of(&config);
     let rates = Rates::from(&config);
     let (mut fixed, mut reference) = (FingertipNetwork::default(), Reference::default());
     let (mut of_weights, mut of_outputs) = (0.0f64, 0.0f64);
@@ -19,8 +19,7 @@ fn worst(config: Config, mut input: impl FnMut(usize) -> (Activations<RECEPTORS>
         let (felt, codes) = input(n);
         let t = exact(&felt);
         if n % 97 == 0 || n == UPDATES {
-            let outputs = fixed.output(&felt, &[Code::Zero; 2]).map(|o| o.as_f64());
-            for (fixed, exact) in outputs.iter().zip(reference.output(&t, &[Code::Zero; 2])) {
+            for (fixed, exact) in outputs(&fixed, &felt).iter().zip(reference.output(&t, &[Code::Zero; 2])) {
                 of_outputs = of_outputs.max((fixed - exact).abs());
             }
             for (fixed, exact) in weights_of(&fixed).iter().flatten().zip(reference.weights.iter().flatten())
@@ -28,10 +27,9 @@ fn worst(config: Config, mut input: impl FnMut(usize) -> (Activations<RECEPTORS>
                 of_weights = of_weights.max((fixed - exact).abs() / FULL_SCALE);
             }
         }
-        fixed.learn(&rule, &felt, &codes);
+        fixed.learn(&rule, &felt, &codes.map(Some));
         reference.learn(&rates, &t, &codes);
     }
-    println!("{config:?}: weights {of_weights:.1e} of full scale, outputs {of_outputs:.1e}");
     (of_weights, of_outputs)
 }
 
@@ -40,7 +38,6 @@ fn holds((of_weights, of_outputs): (f64, f64)) {
     assert!(of_outputs < 1e-3, "outputs {of_outputs:e}");
 }
 
-/// Both ends of beta and its usual value, with these.
 fn betas(delta_ppm: u32, alpha_ppb: u32) -> impl Iterator<Item = Config> {
     let all = [0, 1_000, *Config::BETA_PPB.end()];
     all.into_iter().map(move |beta_ppb| Config { alpha_ppb, beta_ppb, delta_ppm })
@@ -80,21 +77,5 @@ fn noise_at_usual_rates_and_at_the_largest_alpha() {
             let felt = std::array::from_fn(|_| Activation::from_f64(rng.random_range(-1.0..1.0)));
             (Activations::new(felt), [code(n, 331), code(n, 773)])
         }));
-    }
-}
-
-/// Activations of 0.001 to 0.024 and alpha of 1e-6: a 16-bit weight would never move.
-#[test]
-fn the_smallest_useful_update_survives() {
-    let config = Config { alpha_ppb: 1_000, beta_ppb: 100, delta_ppm: 1_000 };
-    let felt = Activations::new(std::array::from_fn(|j| Activation::from_f64(0.001 * (j + 1) as f64)));
-    let rule = Rule::new(&config).unwrap();
-    let (mut fixed, mut reference) = (FingertipNetwork::default(), Reference::default());
-    for _ in 0..UPDATES {
-        fixed.learn(&rule, &felt, &[Code::Plus, Code::Minus]);
-        reference.learn(&Rates::from(&config), &exact(&felt), &[Code::Plus, Code::Minus]);
-    }
-    for (fixed, exact) in weights_of(&fixed).iter().flatten().zip(reference.weights.iter().flatten()) {
-        assert!((fixed / exact - 1.0).abs() < 0.02, "{fixed:e} for {exact:e}");
     }
 }

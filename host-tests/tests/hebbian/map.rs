@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use tenax_logic::hebbian::{Code, Codes, Config, FingertipNetwork, RECEPTORS, Rule, Weight};
+use tenax_logic::hebbian::{Code, Codes, Config, FingertipNetwork, RECEPTORS, Rule};
 
 use super::oracle::{Rates, exact, fixed_point, weights_of};
 use super::task::{Finger, Moment};
@@ -14,7 +14,6 @@ const DELTAS_PPM: [u32; 3] = [10_000, 300_000, 3_000_000];
 
 /// Mean of o1 over [`WINDOW_MS`] below which slip is reported.
 const SLIP_BELOW: f64 = -0.2;
-/// The seed of a trial that no lesson has.
 pub const UNSEEN: u64 = 1_000;
 /// Shortest time that is judged, ms.
 const WINDOW_MS: usize = 50;
@@ -37,22 +36,12 @@ pub enum Fate {
     Useful = b'U',
 }
 
-impl Fate {
-    fn letter(self) -> char {
-        char::from(self as u8)
-    }
-}
-
 /// Scores of the touch-only outputs in a trial that was not learned from, as parts of its time.
 #[derive(Clone, Copy, Debug)]
 pub struct Said {
-    /// Mean of |o1| while it slips.
     pub o1_slip: f64,
-    /// o1 at -1 during slip.
     pub at_end: f64,
-    /// Slip reported during slip.
     pub slip_seen: f64,
-    /// Slip reported during holding.
     pub false_slip: f64,
     /// Right sign of o2 during slip.
     pub direction: f64,
@@ -63,7 +52,6 @@ fn mean(values: impl Iterator<Item = f64>) -> f64 {
     sum / count
 }
 
-/// Scores of weights in a trial, whose phases are whole windows.
 pub fn ask(weights: &[[f64; RECEPTORS]; 2], trial: &[Moment]) -> Said {
     let part = |is: bool| f64::from(u8::from(is));
     let judged = trial.chunks_exact(WINDOW_MS).map(|window| {
@@ -86,13 +74,11 @@ pub fn ask(weights: &[[f64; RECEPTORS]; 2], trial: &[Moment]) -> Said {
     }
 }
 
-/// Largest part of one connection in an output's weights.
 pub fn largest_part(row: &[f64; RECEPTORS]) -> f64 {
     let sum: f64 = row.iter().map(|w| w.abs()).sum();
     row.iter().fold(0.0f64, |largest, w| largest.max(w.abs())) / sum.max(f64::MIN_POSITIVE)
 }
 
-/// Fate of these weights in a trial.
 pub fn fate(weights: &[[f64; RECEPTORS]; 2], trial: &[Moment]) -> Fate {
     let said = ask(weights, trial);
     if weights.iter().any(|row| largest_part(row) > 0.5) {
@@ -111,10 +97,10 @@ pub fn fate(weights: &[[f64; RECEPTORS]; 2], trial: &[Moment]) -> Fate {
 }
 
 pub fn teach(network: &mut FingertipNetwork, config: &Config, moments: &[Moment]) {
-    let rule = Rule::new(config).unwrap();
+    let rule = Rule::of(config);
     for moment in moments {
         if let Some(codes) = moment.lesson() {
-            network.learn(&rule, &moment.felt, &codes);
+            network.learn(&rule, &moment.felt, &codes.map(Some));
         }
     }
 }
@@ -125,7 +111,6 @@ pub fn learned(config: &Config, moments: &[Moment]) -> FingertipNetwork {
     network
 }
 
-/// The means of `t_j v_i` over the lessons.
 pub fn correlations(moments: &[Moment]) -> [[f64; RECEPTORS]; 2] {
     let taught: Vec<_> = moments.iter().filter_map(|m| Some((exact(&m.felt), m.lesson()?))).collect();
     [0, 1].map(|i: usize| {
@@ -147,7 +132,8 @@ fn map() -> String {
                 let measured = fate(&weights_of(&learned(&config, &lesson)), &trial);
                 let settled = fate(&c.map(|c| fixed_point(&Rates::from(&config), &c)), &trial);
                 let (open, close) = if config == Config::default() { ('[', ']') } else { (' ', ' ') };
-                write!(map, "  {open}{}{}{close}", measured.letter(), settled.letter()).unwrap();
+                write!(map, "  {open}{}{}{close}", char::from(measured as u8), char::from(settled as u8))
+                    .unwrap();
             }
             writeln!(map).unwrap();
         }
@@ -168,49 +154,4 @@ fn the_defaults_lie_in_the_middle_of_the_useful_region() {
     let held = include_str!("map.txt");
     let defaults = map.split("\n\n").find(|part| part.contains('[')).expect("the defaults are marked");
     assert_eq!(defaults.trim_end(), held.trim_end(), "another map: put the one printed above into map.txt");
-}
-
-/// The defaults, four times slower: the order of the phases in a trial matters less, as the theory has it.
-fn slow(delta_ppm: u32) -> Config {
-    let Config { alpha_ppb, beta_ppb, .. } = Config::default();
-    Config { alpha_ppb: alpha_ppb / 4, beta_ppb: beta_ppb / 4, delta_ppm }
-}
-
-/// The mean of the weights in the second half of many lessons, and the fixed point, of each output.
-fn settled(config: &Config, mut network: FingertipNetwork) -> [([f64; RECEPTORS], [f64; RECEPTORS]); 2] {
-    const LESSONS: usize = 60;
-    let lesson = Finger::new(1).lesson();
-    let c = correlations(&lesson);
-    let mut mean = [[0.0; RECEPTORS]; 2];
-    for n in 0..LESSONS {
-        teach(&mut network, config, &lesson);
-        if n >= LESSONS / 2 {
-            for (mean, w) in mean.as_flattened_mut().iter_mut().zip(weights_of(&network).as_flattened()) {
-                *mean += w / (LESSONS - LESSONS / 2) as f64;
-            }
-        }
-    }
-    std::array::from_fn(|i| (mean[i], fixed_point(&Rates::from(config), &c[i])))
-}
-
-fn is_close((found, theory): &([f64; RECEPTORS], [f64; RECEPTORS])) {
-    let largest = theory.iter().fold(0.0f64, |largest, w| largest.max(w.abs()));
-    let error = found.iter().zip(theory).fold(0.0f64, |error, (a, b)| error.max((a - b).abs()));
-    println!("{:.3} of the largest weight, {largest:.2}", error / largest);
-    assert!(error < 0.05 * largest, "{found:.3?} for {theory:.3?}");
-}
-
-/// From nothing; and from the fixed point where delta is small: there two rivals take 1 / (beta (1 - c2 / c1)) updates to decide, longer
-/// than the lessons.
-#[test]
-fn weights_settle_and_stay_at_the_fixed_point() {
-    let c = correlations(&Finger::new(1).lesson());
-    for delta_ppm in DELTAS_PPM {
-        let config = slow(delta_ppm);
-        let weights = c.map(|c| fixed_point(&Rates::from(&config), &c).map(Weight::from_f64));
-        settled(&config, FingertipNetwork::from_weights(&weights)).iter().for_each(is_close);
-        if delta_ppm >= Config::default().delta_ppm {
-            settled(&config, FingertipNetwork::default()).iter().for_each(is_close);
-        }
-    }
 }

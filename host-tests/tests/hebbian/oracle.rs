@@ -2,7 +2,6 @@
 
 use tenax_logic::hebbian::{Activations, Code, Config, Network};
 
-/// The largest weight, as the fixed-point network has it.
 pub const FULL_SCALE: f64 = 8.0;
 
 pub fn exact<const N: usize>(activations: &Activations<N>) -> [f64; N] {
@@ -11,6 +10,12 @@ pub fn exact<const N: usize>(activations: &Activations<N>) -> [f64; N] {
 
 pub fn weights_of<const I: usize, const O: usize>(network: &Network<I, O>) -> [[f64; I]; O] {
     network.weights().map(|row| row.map(|weight| weight.as_f64()))
+}
+
+/// Outputs from touch alone (equations 3 and 4).
+pub fn outputs<const I: usize, const O: usize>(network: &Network<I, O>, t: &Activations<I>) -> [f64; O] {
+    let sum = |output| network.sum_of_parts(output, 0..I, t) as f64 / f64::from(1 << 26);
+    std::array::from_fn(|output| sum(output).clamp(-1.0, 1.0))
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -63,11 +68,8 @@ impl<const I: usize, const O: usize> Reference<I, O> {
     }
 }
 
-/// Mean weights at which equations 5 and 6 settle, for `c[j]` the mean of `t_j v`.
-///
-/// With `k = alpha / (beta (S + delta))`, each weight solves `|w| = k |c| (|w| + delta)`, so
-/// `w = k c delta / (1 - k |c|)`; and k is the one number below `1 / max |c|` with `k (S(k) + delta) = alpha / beta`. The
-/// left side grows from 0 to infinity, so there is exactly one.
+/// Mean weights at which equations 5 and 6 settle, for `c[j]` the mean of `t_j v`: `w = k c delta / (1 - k |c|)` with the one
+/// `k = alpha / (beta (S + delta))` below `1 / max |c|`.
 pub fn fixed_point<const I: usize>(rates: &Rates, c: &[f64; I]) -> [f64; I] {
     let ratio = rates.alpha / rates.beta;
     let largest = c.iter().fold(0.0f64, |largest, c| largest.max(c.abs()));

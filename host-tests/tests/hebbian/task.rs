@@ -24,7 +24,6 @@ use rand::{RngExt, SeedableRng};
 use tenax_host_tests::gauss;
 use tenax_logic::hebbian::{Activation, Activations, Code, Codes, RECEPTORS};
 
-/// Vibration receptors come first.
 pub const VIBRATION: usize = 12;
 pub const OFFSET: usize = RECEPTORS - 1;
 /// Trials in a lesson (Tada 2006, section III.C).
@@ -34,19 +33,16 @@ const TRIAL_MS: usize = 7_000;
 const SEEN_AFTER_MS: usize = 66;
 const PICTURE_MS: usize = 33;
 
-/// Receptors of one finger.
 #[derive(Clone, Debug)]
 pub struct Finger {
     noise: [f64; VIBRATION],
     mix: [(f64, f64); RECEPTORS - VIBRATION],
 }
 
-/// A millisecond of a trial.
 #[derive(Clone, Copy, Debug)]
 pub struct Moment {
     pub felt: Activations<RECEPTORS>,
     pub truth: Codes,
-    /// Codes of the camera.
     pub seen: Codes,
 }
 
@@ -69,7 +65,6 @@ fn phase(ms: usize) -> (Codes, f64, f64) {
 }
 
 impl Finger {
-    /// A finger whose receptors sit at random depths and directions.
     pub fn new(seed: u64) -> Self {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         Self {
@@ -114,7 +109,6 @@ impl Finger {
             .collect()
     }
 
-    /// The trials of a lesson, one after the other.
     pub fn lesson(&self) -> Vec<Moment> {
         (0..TRIALS).flat_map(|trial| self.trial(trial)).collect()
     }

@@ -1,5 +1,3 @@
-//! A power cut at every operation, and another one at every operation of the boot after it.
-
 use tenax_hal_shim::words::Kept;
 use tenax_logic::store::{Erase, open};
 
@@ -8,7 +6,6 @@ use super::{Numbers, booted, numbers, save};
 
 const SECTOR_WORDS: usize = 80;
 const SAVES: u32 = 60;
-/// Saves from one boot to the next.
 const SESSION: u32 = 4;
 
 #[derive(Clone, Debug, Default)]
@@ -26,7 +23,6 @@ impl Promise {
     }
 }
 
-/// Saves and boots until the power goes (false) or everything is saved.
 fn live(flash: &mut TestFlash) -> (Promise, bool) {
     let mut promise = Promise::default();
     for n in 0..SAVES {
@@ -52,7 +48,6 @@ fn live(flash: &mut TestFlash) -> (Promise, bool) {
     (promise, true)
 }
 
-/// A flash whose power went at this operation and is back, and its promise.
 fn cut_at(operation: usize, harm: Harm) -> (TestFlash, Promise) {
     let mut flash = TestFlash::blank(SECTOR_WORDS);
     flash.cut = Some((operation, harm));
@@ -62,7 +57,6 @@ fn cut_at(operation: usize, harm: Harm) -> (TestFlash, Promise) {
     (flash, promise)
 }
 
-/// Operations of a life without a cut, in which both sectors wear.
 fn operations() -> usize {
     let mut whole = TestFlash::blank(SECTOR_WORDS);
     assert!(live(&mut whole).1);
@@ -83,7 +77,6 @@ fn any_cut_leaves_the_old_or_the_new() {
     assert!(cases > 10_000, "{cases} boots");
 }
 
-/// Boots, with the power going at each operation of the boot in turn, and not at all; the number of boots.
 fn boot_with_cuts(flash: &TestFlash, promise: &Promise) -> usize {
     let mut undisturbed = flash.clone();
     undisturbed.operations = 0;

@@ -13,7 +13,6 @@ use tenax_logic::store::{Erase, open};
 
 use super::flash::TestFlash;
 
-/// Saves everything that the fingertip asks for; the kinds of the records.
 fn save_all(fingertip: &mut Fingertip, keeper: &mut Keeper, flash: &mut TestFlash) -> Vec<Kept> {
     let (mut log, _) = open(flash, Erase::Allowed);
     let save = |record: Record| {
@@ -25,7 +24,6 @@ fn save_all(fingertip: &mut Fingertip, keeper: &mut Keeper, flash: &mut TestFlas
     std::iter::from_fn(|| fingertip.next_record(keeper)).map(save).collect()
 }
 
-/// A new fingertip with the records of the flash.
 fn booted(flash: &mut TestFlash) -> Fingertip {
     let (_, found) = open(flash, Erase::Allowed);
     let mut fingertip = Fingertip::trusting();

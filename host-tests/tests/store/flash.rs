@@ -12,8 +12,7 @@ pub enum Harm {
     Bits(u32),
     /// A word as above; every word of an erased sector reads something else.
     Noise(u32),
-    /// The bits of this mask that were to be programmed hardly are: they read as programmed at times. The other bits all are (true) or
-    /// none is.
+    /// These bits read as programmed at times; the other bits all are (true) or none is.
     Marginal(u32, bool),
 }
 
@@ -29,18 +28,13 @@ pub const HARMS: [Harm; 6] = [
 #[derive(Clone, Debug)]
 pub struct TestFlash {
     pub words: [Vec<u32>; 2],
-    /// Bits of a word that are hardly programmed.
     weak: Vec<(Sector, usize, u32)>,
-    /// Hardly programmed bits read as programmed.
     pub weak_reads_programmed: bool,
     /// Operations until the power goes, and the harm to the last one.
     pub cut: Option<(usize, Harm)>,
-    /// The power is gone.
     pub dead: bool,
-    /// Erases fail.
     pub worn: bool,
     pub operations: usize,
-    /// Erases of each sector.
     pub erases: [usize; 2],
 }
 
@@ -62,13 +56,11 @@ impl TestFlash {
         }
     }
 
-    /// The power comes back.
     pub fn power_up(&mut self) {
         self.cut = None;
         self.dead = false;
     }
 
-    /// Begins an operation; the harm to it, if the power goes now.
     fn begin(&mut self) -> Result<Option<Harm>, FlashFailed> {
         assert!(!self.dead, "nothing runs without power");
         self.operations += 1;

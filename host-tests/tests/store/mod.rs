@@ -13,7 +13,6 @@ use flash::TestFlash;
 
 type Numbers = [Option<u32>; Kept::ALL.len()];
 
-/// Payload of save number `n` of `kept`: no two are alike, and each kind has its length.
 fn payload(kept: Kept, n: u32) -> Vec<u8> {
     let words = match kept {
         Kept::Network => 5,
@@ -24,7 +23,6 @@ fn payload(kept: Kept, n: u32) -> Vec<u8> {
     (0..words).flat_map(|word: u32| (n << 8 | word << 4 | kept as u32).to_le_bytes()).collect()
 }
 
-/// Programs a whole record; the number of its words.
 fn save(flash: &mut TestFlash, log: &mut Log, kept: Kept, n: u32) -> Result<usize, FlashFailed> {
     let payload = payload(kept, n);
     let mut saving = log.begin(kept, &payload).expect("room for it");
@@ -39,7 +37,6 @@ fn refusal(log: &mut Log, payload: &[u8]) -> Option<Refused> {
     log.begin(Kept::Network, payload).err()
 }
 
-/// Number of the save of `kept` that is found. Fails if that was never saved.
 fn number(flash: &TestFlash, found: &Found, kept: Kept) -> Option<u32> {
     let mut buffer = [0; 64];
     let bytes = found.read(flash, kept, &mut buffer)?;
@@ -48,12 +45,10 @@ fn number(flash: &TestFlash, found: &Found, kept: Kept) -> Option<u32> {
     Some(n)
 }
 
-/// Numbers of the saves that a boot finds.
 fn numbers(flash: &TestFlash, found: &Found) -> Numbers {
     Kept::ALL.map(|kept| number(flash, found, kept))
 }
 
-/// Numbers after a boot that may erase.
 fn booted(flash: &mut TestFlash) -> Numbers {
     let (_, found) = open(flash, Erase::Allowed);
     numbers(flash, &found)

@@ -4,42 +4,12 @@ use proptest::prelude::*;
 use tenax_hal_shim::words::Kept;
 use tenax_logic::store::{Erase, open};
 
-use super::flash::{HARMS, TestFlash};
+use super::flash::TestFlash;
 use super::{booted, numbers, save};
 
 const SECTOR_WORDS: usize = 96;
 
-fn kepts() -> impl Strategy<Value = Kept> {
-    prop::sample::select(Kept::ALL.to_vec())
-}
-
 proptest! {
-    #[test]
-    fn cut_after_cut_nothing_finished_is_lost_and_nothing_unsaved_is_found(lives in prop::collection::vec((0usize..60, 0..HARMS.len(), kepts()), 1..40)) {
-        let mut flash = TestFlash::blank(SECTOR_WORDS);
-        let mut known = [None; 4];
-        let mut n = 0;
-        for (operations, harm, first) in lives {
-            flash.power_up();
-            let now = booted(&mut flash.clone());
-            for kept in Kept::ALL {
-                let index = kept as usize;
-                // Only a save that began since may replace it.
-                prop_assert!(now[index] >= known[index], "{:?}: {:?} after {:?}", kept, now[index], known[index]);
-            }
-            known = now;
-            flash.cut = Some((operations, HARMS[harm]));
-            let (mut log, _) = open(&mut flash, Erase::Allowed);
-            for kept in Kept::ALL.into_iter().cycle().skip(first as usize).take(20) {
-                n += 1;
-                if flash.dead || log.free_words() < 9 || save(&mut flash, &mut log, kept, n).is_err() {
-                    break;
-                }
-                known[kept as usize] = Some(n);
-            }
-        }
-    }
-
     #[test]
     fn after_any_damage_only_saved_records_are_found_and_the_log_goes_on(
         saves in 1u32..30,

@@ -12,7 +12,7 @@ use tenax_sim::labelled::{self, Part, Recording, library};
 
 use super::People;
 use crate::dataset::{Dataset, Plan, session::Sizes};
-use crate::evaluate::{emg, online, report::Report, test_split};
+use crate::evaluate::{emg, report::Report, test_split};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -20,10 +20,9 @@ Examples:
   tenax evaluate --report json                     for programs
   tenax evaluate --dataset my.csv --recipe my.toml --network out/train
                                                    the network that `tenax train` has made of one's own
-  tenax evaluate --online --host                   the paper's two tasks, ten times with each of four materials
   tenax evaluate emg --recordings FOLDER           intent recognition on EMG envelopes of people";
 
-/// Score the array's network on held-out data, or the whole hand in the paper's tasks
+/// Score the array's network on held-out data
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES, args_conflicts_with_subcommands = true)]
 pub struct Args {
@@ -36,9 +35,9 @@ pub struct Args {
     #[arg(long, value_name = "FILE.toml|NAME", requires = "dataset")]
     recipe: Option<String>,
     /// The network in this folder of `tenax train` instead of the one that ships
-    #[arg(long, value_name = "DIR", conflicts_with = "online")]
+    #[arg(long, value_name = "DIR")]
     network: Option<PathBuf>,
-    /// Seed of the built-in data set, or of the online tasks
+    /// Seed of the built-in data set
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Size of the built-in data set: training sessions of each material; validation and test are in proportion
@@ -47,15 +46,6 @@ pub struct Args {
     /// Part of the built-in data set. Choose by validation; keep test for final scores
     #[arg(long, value_name = "train|validation|test", default_value = "test", conflicts_with = "dataset")]
     part: Part,
-    /// The paper's two tasks with the whole hand, instead of recordings
-    #[arg(long, conflicts_with_all = ["dataset", "sessions"])]
-    online: bool,
-    /// Online: repetitions of each task with each material
-    #[arg(long, value_name = "N", default_value_t = online::TIMES, requires = "online")]
-    times: usize,
-    /// Online: run the host's own build of the logic, no image, no emulator
-    #[arg(long, requires = "online")]
-    host: bool,
     /// How to print the scores
     #[arg(long, value_enum, default_value_t = Format::Text)]
     report: Format,
@@ -79,10 +69,6 @@ struct EmgArgs {
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     let shown = if let Some(What::Emg(EmgArgs { people, faults })) = &args.what {
         people.report.show(&emg::evaluate(&people.recordings, *faults, people.seed)?)
-    } else if args.online {
-        let board = super::board(args.host)?;
-        let tries = with_bar("tasks", |progress| online::tasks(args.seed, args.times, &board, progress))?;
-        args.report.show(&online::Report { rows: online::rows(&tries), tries })
     } else {
         args.report.show(&network(args)?)
     };

@@ -6,6 +6,7 @@ use std::process::{Command, ExitCode};
 
 use anyhow::{Context, ensure};
 use tenax_frames::tool::{folder, format::Format, out, progress::with_bar, workspace};
+use tenax_logic::array::COVARIANCE_WINDOW;
 use tenax_sim::array::network::{self, Network};
 use tenax_sim::array::{adapt, edges};
 use tenax_sim::labelled::{self, Part, library};
@@ -18,8 +19,8 @@ use crate::train::export;
 use crate::train::features::{Recipe, Sequence, sequence};
 use crate::train::fit::{self, FEW_OBJECTS, SHIPPED};
 use crate::train::quantise::Quantised;
-use crate::train::report::{Data, Report, Validation};
-use crate::train::score::{Aim, Judged};
+use crate::train::report::{Data, Report};
+use crate::train::score::{Aim, Judged, score};
 use crate::train::table::Table;
 
 const EXAMPLES: &str = "\
@@ -30,8 +31,6 @@ Examples:
 
 /// The default file of `tenax dataset`.
 const DATASET: &str = "out/array_dataset.csv";
-/// Files of `--out` that `--ship` copies, and their places.
-const SHIPPED_TO: [(&str, &str); 1] = [("network.rs", "logic/src/array/shipped.rs")];
 
 /// Train the force array's slip detector from labelled recordings
 #[derive(Debug, clap::Args)]
@@ -54,7 +53,7 @@ pub struct Args {
     /// How to print the report
     #[arg(long, value_enum, default_value_t = Format::Text)]
     report: Format,
-    /// Copy network and card to logic/src/array/shipped.rs and docs/
+    /// Copy the network to logic/src/array/network.in
     #[arg(long)]
     ship: bool,
 }
@@ -99,19 +98,17 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     for (name, bytes) in &files {
         super::write(&folder.join(name), bytes)?;
     }
-    for (name, to) in SHIPPED_TO.into_iter().filter(|_| args.ship) {
-        shipped(to, &fs::read(folder.join(name))?)?;
+    if args.ship {
+        shipped("logic/src/array/network.in", &fs::read(folder.join("network.in"))?)?;
     }
     Ok(ExitCode::SUCCESS)
 }
 
-/// Writes a file of the project, and formats it if it is Rust.
+/// Writes a Rust file of the project, formatted.
 fn shipped(to: &str, bytes: &[u8]) -> anyhow::Result<()> {
     let to = workspace::root()?.join(to);
     super::write(&to, bytes)?;
-    if to.extension().is_some_and(|extension| extension == "rs") {
-        workspace::run(Command::new("rustfmt").args(["--edition", "2024"]).arg(&to))?;
-    }
+    workspace::run(Command::new("rustfmt").args(["--edition", "2024"]).arg(&to))?;
     Ok(())
 }
 
@@ -120,6 +117,7 @@ fn train(path: &Path, args: &Args) -> anyhow::Result<[(&'static str, Vec<u8>); 4
     let name = path.display().to_string();
     let recipe = library::choose(path, args.recipe.as_deref())?;
     let features = Recipe::of(&recipe);
+    ensure!(!args.ship || features.window == COVARIANCE_WINDOW, "the firmware has another window");
     let bytes = fs::read(path).with_context(|| format!("{name}: cannot be read"))?;
     let mut recordings = labelled::parse(bytes.as_slice(), &recipe, &name)?;
     recordings.retain(|own| own.part != Some(Part::Test));
@@ -162,10 +160,12 @@ fn train(path: &Path, args: &Args) -> anyhow::Result<[(&'static str, Vec<u8>); 4
         saved.edges = chosen.edges;
     }
     let pours = || sequences.iter().filter(|own| is_validated(own.part, own.doing));
-    let float: Vec<_> = pours().map(|own| (own, fit::judge(&trained.network, &Table::of([own])))).collect();
-    let exported = pours()
-        .map(|own| Ok((own, Judged { logits: quantised.logits(own)?, slips: own.slips.clone() })))
-        .collect::<anyhow::Result<Vec<_>>>()?;
+    let float = fit::judge(&trained.network, &Table::of(pours()));
+    let mut exported = Judged::default();
+    for own in pours() {
+        exported.extend(&Judged { logits: quantised.logits(own)?, slips: own.slips.clone() });
+    }
+    let scored = |judged: &Judged| (!judged.slips.is_empty()).then(|| score(judged, choice.threshold));
     let report = Report {
         seed: args.seed,
         data,
@@ -173,8 +173,8 @@ fn train(path: &Path, args: &Args) -> anyhow::Result<[(&'static str, Vec<u8>); 4
         choice,
         threshold_permille: export::permille(&choice),
         edges,
-        float: Validation::of(&float, choice.threshold),
-        exported: Validation::of(&exported, choice.threshold),
+        float: scored(&float),
+        exported: scored(&exported),
     };
     out::unless_closed(args.report.show(&report))?;
     let about = format!(
@@ -182,7 +182,7 @@ fn train(path: &Path, args: &Args) -> anyhow::Result<[(&'static str, Vec<u8>); 4
         report.data.file, report.data.sha256, report.seed
     );
     Ok([
-        ("network.rs", export::rust(&saved, &features, &about).into_bytes()),
+        ("network.in", export::rust(&saved, &features, &about).into_bytes()),
         (network::FILE, serde_json::to_vec(&saved)?),
         ("model-card.md", report.card().into_bytes()),
         ("report.json", serde_json::to_vec_pretty(&report)?),

@@ -15,15 +15,13 @@ use tenax_sim::scorer::SlipSpan;
 
 const SCAN_S: f64 = 1.0 / SCAN_HZ as f64;
 
-/// One time step of a recording.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Step {
     /// Instant of the last element's reading, s.
     pub t_s: f64,
-    /// The ten samples, 14 bits each, as the slow frame reads them: one after the other, each the sum of four codes.
+    /// 14 bits each, as the slow frame reads them: one after the other, each the sum of four codes.
     pub samples: [u16; ARRAY_COUNT],
-    /// Whether the box slipped since the step before: it moved over the pads, by sliding or turning, faster than the
-    /// scene's floor.
+    /// Whether the box moved over the pads since the step before, faster than the scene's floor.
     pub slips: bool,
 }
 
@@ -33,38 +31,22 @@ pub struct Recording {
     pub steps: Vec<Step>,
     /// Slips that the world counted, and micro slip that came to nothing.
     pub spans: Vec<SlipSpan>,
-    /// Way of the box in all of them, mm.
-    pub slid_mm: f64,
     /// Whether it fell; then the recording ends there.
     pub dropped: bool,
 }
 
-impl Recording {
-    /// Slips that the world counted.
-    pub fn slips(&self) -> usize {
-        self.spans.iter().filter(|span| span.macro_onset_s.is_some()).count()
-    }
-}
-
-/// Streams of the session's seed for a recording.
-#[derive(Clone, Copy, Debug)]
-enum Stream {
-    Story = 0,
-    Operator = 1,
-    World = 3,
-}
-
-fn stream(session: &Session, story: Story, stream: Stream) -> ChaCha8Rng {
+/// A stream of the session's seed: 0 for the story, 1 for the operator, 3 for the world.
+fn stream(session: &Session, story: Story, number: u64) -> ChaCha8Rng {
     let mut rng = ChaCha8Rng::seed_from_u64(session.seed);
-    rng.set_stream(1 + 4 * story as u64 + stream as u64);
+    rng.set_stream(1 + 4 * story as u64 + number);
     rng
 }
 
 /// Records a story of a session. Fails if the session has a number that no scene may have.
 pub fn record(session: &Session, story: Story) -> anyhow::Result<Recording> {
-    let scene = story.scene_in(session, &mut stream(session, story, Stream::Story), |_| ())?;
-    let mut operator = Operator::new(story, session, stream(session, story, Stream::Operator));
-    let mut world = World::new(&scene, rand::RngExt::random(&mut stream(session, story, Stream::World)));
+    let scene = story.scene_in(session, &mut stream(session, story, 0), |_| ())?;
+    let mut operator = Operator::new(story, session, stream(session, story, 1));
+    let mut world = World::new(&scene, rand::RngExt::random(&mut stream(session, story, 3)));
     let floor_mm = scene.slip_floor_mm_s();
     let mut drive = MotorDrive::Coast;
     let (mut steps, mut samples) = (Vec::new(), [0; ARRAY_COUNT]);
@@ -96,11 +78,5 @@ pub fn record(session: &Session, story: Story) -> anyhow::Result<Recording> {
         drive = operator.drive(&world, slips);
     }
     let truth = world.truth();
-    Ok(Recording {
-        story,
-        steps,
-        spans: fate::spans(truth),
-        slid_mm: truth.slips.iter().map(|slip| slip.distance_mm).sum(),
-        dropped: truth.dropped,
-    })
+    Ok(Recording { story, steps, spans: fate::spans(truth), dropped: truth.dropped })
 }

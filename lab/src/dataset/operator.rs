@@ -1,5 +1,5 @@
-//! Whoever holds the gripper while data is collected: closes it, tightens it some time after the box slips, and sometimes
-//! for no reason. They see the world itself, never the array: what they do must not depend on any detector.
+//! The person who holds the gripper while data is collected: closes it, tightens it some time after the box slips, and sometimes for no
+//! reason. They see the world, never the array: what they do must not depend on any detector.
 
 use std::collections::VecDeque;
 
@@ -12,7 +12,6 @@ use tenax_scene::physics::GRAVITY_M_S2;
 use super::session::Session;
 use super::story::Story;
 
-/// The gripper opens so fast when they let go of everything.
 const LET_GO: MotorDrive = MotorDrive::Open(Duty::per_mille(500));
 const EASE: MotorDrive = MotorDrive::Open(Duty::per_mille(40));
 /// Force at which a finger stalls under the whole supply, N, and its speed without a load, mm/s: as in the three scenes.
@@ -35,7 +34,6 @@ enum Wish {
     Tighten(f64),
     /// Open until it presses no harder, N.
     Ease(f64),
-    /// Let go.
     Open,
 }
 
@@ -46,7 +44,6 @@ enum Plan {
     Grip(f64),
     /// The grip times this.
     Change(f64),
-    /// Let go.
     Open,
 }
 
@@ -71,9 +68,7 @@ impl Operator {
         let plans = match story {
             Story::Pour => vec![(0.4, Plan::Grip(between(1.1, 1.7)))],
             // As often too loosely as firmly: then it slips while it is lifted.
-            Story::Pick => {
-                vec![(0.4, Plan::Grip(between(0.6, 1.5))), (7.4, Plan::Open)]
-            }
+            Story::Pick => vec![(0.4, Plan::Grip(between(0.6, 1.5))), (7.4, Plan::Open)],
             Story::Disturb => vec![
                 (0.4, Plan::Grip(between(3.0, 5.0))),
                 (10.2, Plan::Change(between(1.1, 1.5))),

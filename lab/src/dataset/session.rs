@@ -1,8 +1,6 @@
-//! Sessions: a box, an array and a gripper as somebody set them up on one day. No two are alike.
+//! Sessions: a box, an array and a gripper as somebody set them up on one day.
 
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
-use serde::Serialize;
-
 use tenax_sim::array::material::{Ends, HELD_OUT, Material, SEEN};
 use tenax_sim::labelled::Part;
 
@@ -25,7 +23,7 @@ impl Sizes {
     }
 }
 
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Session {
     pub name: String,
     pub split: Part,
@@ -34,80 +32,63 @@ pub struct Session {
     pub specimen: u32,
     pub mu_s: f64,
     pub mu_d: f64,
-    /// Rise of dynamic friction with each decade of speed, as a part.
-    pub mu_per_decade: f64,
-    /// Pitch of the texture, mm.
-    pub pitch_mm: f64,
-    /// Unevenness, as a part of an element's load.
-    pub uneven: f64,
     /// Stiffness of cover and wall, a finger, N/mm.
     pub stiffness_n_per_mm: f64,
-    /// The way over which contacts are new ones, um.
-    pub renews_um: f64,
-    /// Part of the released shear that comes off an element's load.
-    pub slip_part: f64,
-    /// The part of it that goes to the cover's rim.
-    pub rim_part: f64,
-    /// Place of the box along the array, mm from its middle.
-    pub place_mm: f64,
-    /// Offset of the box's mass beside the pads, mm.
-    pub offset_mm: f64,
-    /// Offset below them, mm.
-    pub hang_mm: f64,
-    /// Sensitivity of the array, mV/N an element.
-    pub mv_per_n: f64,
-    pub spread: f64,
     /// Noise of a reading, rms, mV.
     pub noise_mv: f64,
-    /// Force of a knock on the pad, mN for each mV at a film.
-    pub knock_mn_per_mv: f64,
-    /// Force of the gear's teeth on it, as a part of the load.
-    pub motor_part: f64,
-    /// Part of the load that a shear as large as it moves to the pad's end.
-    pub tilt: f64,
+    /// The other numbers of its scenes.
+    pub others: Vec<Number>,
 }
 
+/// `section.key` of a scene file, and its value.
+pub type Number = (&'static str, f64);
+
 impl Session {
+    /// A field's draw depends on those before it: a new one is drawn last.
     fn draw(name: String, split: Part, material: &Material, rng: &mut ChaCha8Rng) -> Self {
         let seed = rng.random();
         let specimen = rng.random();
-        let mut evenly = |low: f64, high: f64| rounded(rng.random_range(low..high));
-        let (place_mm, offset_mm, hang_mm) = (evenly(-3.0, 3.0), evenly(-12.0, 12.0), evenly(6.0, 20.0));
+        // Place of the box along the array; offset of its mass beside the pads, and below them.
+        let mut others =
+            [("array.place_mm", -3.0..3.0), ("pitch.offset_mm", -12.0..12.0), ("pitch.hang_mm", 6.0..20.0)]
+                .map(|(place, ends)| (place, rounded(rng.random_range(ends))))
+                .to_vec();
         // As often in one tenth of a decade as in another: nobody knows more than the ends.
         let mut drawn =
             |[low, high]: Ends| rounded((low.ln() + (high / low).ln() * rng.random_range(0.0..1.0)).exp());
         let contact = &material.contact;
         let mu_s = drawn(material.mu_s);
-        Self {
-            mu_s,
-            mu_d: rounded(mu_s * drawn(material.mu_ratio)),
-            mu_per_decade: drawn(material.mu_per_decade),
-            pitch_mm: drawn(material.pitch_mm),
-            uneven: drawn(material.uneven),
-            stiffness_n_per_mm: drawn(material.stiffness_n_per_mm),
-            renews_um: drawn(contact.renews_um),
-            slip_part: drawn(contact.slip_part),
-            rim_part: drawn(contact.rim_part),
-            place_mm,
-            offset_mm,
-            hang_mm,
-            mv_per_n: drawn(contact.mv_per_n),
-            spread: drawn(contact.spread),
-            noise_mv: drawn(contact.noise_mv),
-            knock_mn_per_mv: drawn(contact.knock_mn_per_mv),
-            motor_part: drawn(contact.motor_part),
-            // Last: a field's draw depends on those before it.
-            tilt: drawn(contact.tilt),
-            name,
-            split,
-            material: material.name,
-            seed,
-            specimen,
-        }
+        let mu_d = rounded(mu_s * drawn(material.mu_ratio));
+        others.push(("contact.mu_per_decade", drawn(material.mu_per_decade)));
+        others.push(("contact.pitch_mm", drawn(material.pitch_mm)));
+        others.push(("array.uneven", drawn(material.uneven)));
+        let stiffness_n_per_mm = drawn(material.stiffness_n_per_mm);
+        others.push(("array.renews_um", drawn(contact.renews_um)));
+        others.push(("array.slip_part", drawn(contact.slip_part)));
+        others.push(("array.rim_part", drawn(contact.rim_part)));
+        others.push(("array.mv_per_n", drawn(contact.mv_per_n)));
+        others.push(("array.spread", drawn(contact.spread)));
+        let noise_mv = drawn(contact.noise_mv);
+        others.push(("array.knock_mn_per_mv", drawn(contact.knock_mn_per_mv)));
+        others.push(("array.motor_part", drawn(contact.motor_part)));
+        others.push(("array.tilt", drawn(contact.tilt)));
+        let material = material.name;
+        Self { name, split, material, seed, specimen, mu_s, mu_d, stiffness_n_per_mm, noise_mv, others }
+    }
+
+    /// The numbers of its scenes.
+    pub fn numbers(&self) -> impl Iterator<Item = Number> {
+        let own = [
+            ("contact.mu_s", self.mu_s),
+            ("contact.mu_d", self.mu_d),
+            ("object.stiffness_n_per_mm", self.stiffness_n_per_mm),
+            ("array.noise_mv", self.noise_mv),
+        ];
+        own.into_iter().chain(self.others.iter().copied())
     }
 }
 
-/// To four places: what the manifest says is what was run.
+/// To four places.
 fn rounded(value: f64) -> f64 {
     (value * 1e4).round() / 1e4
 }

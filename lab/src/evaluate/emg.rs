@@ -1,6 +1,4 @@
-//! Intent recognition, scored on recorded envelopes of people: right, wrong way, missed, false and late.
-//!
-//! Two kinds of [recordings]: sessions of minutes with labels, and [short ones](two_channel) that are named by their movement.
+//! Intent recognition, scored on recorded envelopes of people: [sessions](recordings) with labels, and [short ones](two_channel).
 
 pub mod curves;
 pub mod faults;
@@ -11,9 +9,9 @@ pub(super) mod trial;
 pub mod two_channel;
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use anyhow::{Context, bail};
+use anyhow::bail;
 use rayon::prelude::*;
 use serde::Serialize;
 use tenax_logic::emg::constants::Fitted;
@@ -48,7 +46,6 @@ impl<T> Kinds<T> {
 
 #[derive(Clone, Debug, Serialize)]
 pub struct Person {
-    /// Number in the file names.
     pub person: u32,
     #[serde(flatten)]
     pub scores: Kinds<Score>,
@@ -58,7 +55,6 @@ pub struct Person {
     pub sessions: usize,
 }
 
-/// The whole folder.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
     /// Medians over people.
@@ -101,13 +97,12 @@ pub(super) struct Recordings {
 }
 
 impl Recordings {
-    /// Reads everything, or one person.
     pub fn read(folder: &Path) -> anyhow::Result<Self> {
-        let mut files = csv_files(folder)?;
-        files.sort();
         let mut all = Self::default();
         let mut short = Vec::new();
-        for path in files {
+        // Sorted by their paths.
+        for path in glob::glob(&format!("{}/**/*.csv", glob::Pattern::escape(&folder.to_string_lossy())))? {
+            let path = path?;
             let stem = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or_default();
             if let Some([person, day, posture]) = numbers(stem) {
                 let days = all.people.entry(person).or_default();
@@ -126,23 +121,6 @@ impl Recordings {
         }
         Ok(all)
     }
-}
-
-/// The tables in a folder and in its own folders.
-fn csv_files(folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
-    let mut files = Vec::new();
-    let mut folders = vec![folder.to_owned()];
-    while let Some(folder) = folders.pop() {
-        for entry in std::fs::read_dir(&folder).with_context(|| folder.display().to_string())? {
-            let path = entry?.path();
-            if path.is_dir() {
-                folders.push(path);
-            } else if path.extension().is_some_and(|extension| extension == "csv") {
-                files.push(path);
-            }
-        }
-    }
-    Ok(files)
 }
 
 /// The two-channel sessions of a folder and its own folders. Fails if there is no recording, or one cannot be read.
@@ -182,21 +160,29 @@ mod tests {
         let trials = Trials::of(&days);
         let [trial] = &trials.all[..] else { panic!("it separates: {:?}", trials.refused) };
         let said = trial.play(&FITTED);
-        let score = |recording: &Recording| {
+        let wishes = |said: &[score::Said]| said.iter().map(|own| own.wish).collect::<Vec<_>>();
+        let fitted = trial.decide(&FITTED, &trial.hear());
+        assert_eq!(wishes(&fitted), wishes(&said), "what is fitted is what is played");
+        let count = |recording: Recording| {
             let mut count = Count::default();
-            count.add(recording, &said, 2);
-            count.score().expect("it has rows")
+            count.add(&recording, &said, 2);
+            count
         };
-        let right = score(&made_up());
+        let (good, bad) = (count(made_up()), count(swapped(made_up())));
+        let right = good.score().expect("it has rows");
         assert!(right.close_right > 0.95 && right.open_right > 0.95 && right.missed == 0.0, "{right:?}");
         assert!(right.false_per_hour == 0.0 && right.latency_s_p50 < 0.2, "{right:?}");
-        let swapped = score(&swapped(made_up()));
+        let swapped = bad.score().expect("it has rows");
         assert!(swapped.close_wrong_way > 0.95 && swapped.open_right == 0.0, "{swapped:?}");
-        let wishes = |said: &[score::Said]| said.iter().map(|own| own.wish).collect::<Vec<_>>();
-        assert_eq!(
-            wishes(&trial.decide(&FITTED, &trial.hear())),
-            wishes(&said),
-            "what is fitted is what is played"
-        );
+
+        // People who are alike leave no doubt of the median, and one who is not does.
+        let interval = |counts: [&Count; 3]| {
+            let people = counts.map(|count| Sessions(vec![(Kind::SameSession, count.clone())]));
+            let interval = Interval::of(&people, Kind::SameSession).expect("they have sessions");
+            [interval.low.open_right, interval.high.open_right]
+        };
+        assert_eq!(interval([&good, &good, &good]), [right.open_right; 2]);
+        assert_eq!(interval([&good, &bad, &good]), [0.0, right.open_right]);
+        assert!(Interval::of(&[], Kind::SameSession).is_none());
     }
 }

@@ -1,9 +1,5 @@
-//! Fits the constants of the wearer's model to recordings of people, and says what they are worth on people held apart.
-//!
-//! A search: up to three constants change, each by a step that grows with success and shrinks with failure. A change stays if it costs
-//! less, and none of the people, the [promises](promises) or the faults drawn over these people are the worse for it: what helps one
-//! person at another's expense is chance. It begins at what ships. People are held apart twice, each alone and each half of them: fitted
-//! on the others, from round figures that were not chosen on anybody.
+//! Fits the constants of the wearer's model to recordings of people by a random search, and scores them on each person who was left out. A
+//! change stays if it costs less and makes no person, no [promise](promises) and no drawn fault worse.
 
 mod promises;
 
@@ -21,7 +17,7 @@ use tenax_logic::emg::fitted::FITTED;
 
 use self::promises::Promises;
 use super::emg::faults;
-use super::emg::interval::{Interval, Sessions};
+use super::emg::interval::Interval;
 use super::emg::recordings::Days;
 use super::emg::score::Count;
 use super::emg::trial::{Kind, Trial, Trials};
@@ -43,8 +39,6 @@ impl<'a> Wearer<'a> {
         Self { number, days, trials: Trials::of(days).all.into_iter().map(heard).collect() }
     }
 
-    /// Cost of this wearer's scores: windows that are not right, and those the wrong way, unanswered and false motions, which annoy
-    /// more than their share, and what is late.
     fn cost(&self, fitted: &'static Fitted) -> f64 {
         let of = |kind: Kind, false_motion: f64| {
             let own = self.trials.iter().filter(|(trial, _)| trial.kind == kind);
@@ -95,23 +89,11 @@ const WORSE: f64 = 0.005;
 const FAULTS: u32 = 400;
 const OPENS: f64 = 20.0;
 
-/// Fitted without some people, and what it is worth on them.
-#[derive(Clone, Debug, Serialize)]
-pub struct Held {
-    pub fitted_on: Vec<u32>,
-    /// Mean cost of the others: of the round figures, of what ships (which has seen them), and of what was fitted.
-    pub plain_cost: f64,
-    pub shipped_cost: f64,
-    pub fitted_cost: f64,
-}
-
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
     pub cost: [f64; 2],
-    /// Each way to hold people apart.
-    pub held: Vec<Held>,
+    /// Each person with constants that were fitted to the others, from round figures.
     pub held_one: emg::Report,
-    pub held_half: emg::Report,
     /// The file, `logic/src/emg/fitted.rs`.
     pub file: String,
 }
@@ -194,52 +176,26 @@ fn search(
     ([first, sum(&least)], best)
 }
 
-fn splits(count: usize) -> Vec<Vec<usize>> {
-    let of = |size: usize| {
-        let chosen = (0..1u32 << count).filter(move |own| own.count_ones() as usize == size);
-        chosen.map(move |own| (0..count).filter(|n| own >> n & 1 == 1).collect())
-    };
-    let mut all: Vec<Vec<usize>> = of(count - 1).collect();
-    // Of two people a half is all but one.
-    all.extend(of(count / 2).filter(|_| count > 2));
-    all
-}
-
-/// Searches for `rounds`, once with everybody and once for each way to hold people apart; `part` gets the part that is done. Fails if
-/// there are not at least two people, or a recording cannot be read.
+/// Searches for `rounds`, once with everybody and once without each person; `part` gets the part that is done. Fails if there are not at
+/// least two people, or a recording cannot be read.
 pub fn fit(folder: &Path, rounds: u32, seed: u64, part: &(dyn Fn(f64) + Sync)) -> anyhow::Result<Report> {
     let Recordings { people, sessions } = Recordings::read(folder)?;
     ensure!(people.len() > 1, "{}: one person is not enough to hold one apart", folder.display());
     let promises = Promises::of(&sessions);
     let wearers: Vec<Wearer> = people.iter().map(|(&number, days)| Wearer::of(number, days)).collect();
     let all: Vec<&Wearer> = wearers.iter().collect();
-    let splits = splits(all.len());
     let done = AtomicU32::new(0);
-    let whole = f64::from(rounds) * (splits.len() + 1) as f64;
+    let whole = f64::from(rounds) * (all.len() + 1) as f64;
     let step = &|| part(f64::from(done.fetch_add(1, Ordering::Relaxed)) / whole);
-    let tried: Vec<(Held, Vec<(emg::Person, Sessions)>)> = splits
-        .par_iter()
-        .map(|split| {
-            let (own, others): (Vec<&Wearer>, Vec<&Wearer>) =
-                all.iter().partition(|wearer| split.iter().any(|&n| all[n].number == wearer.number));
-            let fitted = search(&own, &promises, (rounds, seed), &PLAIN, step).1;
-            let cost = |fitted| others.iter().map(|own| own.cost(fitted)).sum::<f64>() / others.len() as f64;
-            let held = Held {
-                fitted_on: own.iter().map(|own| own.number).collect(),
-                plain_cost: cost(&PLAIN),
-                shipped_cost: cost(&FITTED),
-                fitted_cost: cost(fitted),
-            };
-            (held, others.iter().map(|own| person(fitted, own.number, own.days)).collect())
-        })
-        .collect();
+    let without = |&own: &&Wearer| {
+        let others: Vec<&Wearer> = all.iter().copied().filter(|other| other.number != own.number).collect();
+        let fitted = search(&others, &promises, (rounds, seed), &PLAIN, step).1;
+        person(fitted, own.number, own.days)
+    };
+    let held_one = emg::Report::of(all.par_iter().map(without).collect());
     let (cost, fitted) = search(&all, &promises, (rounds, seed), &FITTED, step);
-    let (held, persons): (Vec<Held>, Vec<_>) = tried.into_iter().unzip();
-    let mut persons = persons.into_iter();
-    let held_one = emg::Report::of(persons.by_ref().take(all.len()).flatten().collect());
-    let held_half = emg::Report::of(persons.flatten().collect());
     let file = file(fitted, &all, (rounds, seed), cost, &held_one);
-    Ok(Report { cost, held, held_one, held_half, file })
+    Ok(Report { cost, held_one, file })
 }
 
 /// A row of the model card.
@@ -283,17 +239,4 @@ fn file(
         persons.join(", "),
         rows.concat(),
     )
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn everybody_is_held_apart_alone_and_with_each_half() {
-        assert_eq!(splits(2), [[0], [1]]);
-        let four = splits(4);
-        assert_eq!(four[..4], [[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]]);
-        assert_eq!(four[4..], [[0, 1], [0, 2], [1, 2], [0, 3], [1, 3], [2, 3]]);
-    }
 }

@@ -102,9 +102,11 @@ impl Bench {
         let sum: i64 = films.iter().map(|weight| i64::from(weight.into_bits())).sum();
         films.fill(Weight::from_bits((sum / PVDF_COUNT as i64) as i32));
         let mut bytes = [0; hebbian::SNAPSHOT_LENGTH];
-        let kept = snapshot::save(&normaliser, &FingertipNetwork::from_weights(&weights), more, &mut bytes);
+        let changed = FingertipNetwork::from_weights(&weights);
+        let kept = snapshot::Contents::of(&normaliser, &changed, more);
+        let kept = kept.write(&mut bytes).context("a snapshot of another length")?;
         let mut other = self.clone();
-        other.fingertip.restore(words::Kept::Network, kept.context("a snapshot of another length")?);
+        other.fingertip.restore(words::Kept::Network, kept);
         Ok(other)
     }
 }

@@ -86,7 +86,11 @@ pub fn sequence(recording: &Recording, recipe: &Recipe) -> Sequence {
     let knees = (Knee::at(recipe.covariance_knee), Knee::at(recipe.spectrum_knee));
     let structure_knees = structure::knees(recipe.structure_knee);
     let (mut past, mut structure) = (Past::default(), Structure::default());
-    let mut spectrum = Spectrum::of(recipe.spectrum);
+    let mut spectrum: Box<dyn Spectrum> = match recipe.spectrum {
+        10 => Box::new(SlidingSpectrum::<10>::default()),
+        20 => Box::new(SlidingSpectrum::<20>::default()),
+        _ => Box::new(SlidingSpectrum::<SPECTRUM_WINDOW>::default()),
+    };
     let mut sum = 0;
     let d_max = recipe.d_max();
     let mut differences = Vec::new();
@@ -130,35 +134,18 @@ pub fn sequence(recording: &Recording, recipe: &Recipe) -> Sequence {
 }
 
 /// A transform of one of the firmware's lengths.
-enum Spectrum {
-    Ten(SlidingSpectrum<10>),
-    Twenty(SlidingSpectrum<20>),
-    Forty(SlidingSpectrum<SPECTRUM_WINDOW>),
+trait Spectrum {
+    fn push(&mut self, sum: i32);
+    fn powers(&self) -> [f32; BINS];
 }
 
-impl Spectrum {
-    fn of(sums: usize) -> Self {
-        match sums {
-            10 => Self::Ten(SlidingSpectrum::default()),
-            20 => Self::Twenty(SlidingSpectrum::default()),
-            _ => Self::Forty(SlidingSpectrum::default()),
-        }
-    }
-
+impl<const SUMS: usize> Spectrum for SlidingSpectrum<SUMS> {
     fn push(&mut self, sum: i32) {
-        match self {
-            Self::Ten(spectrum) => spectrum.push(sum),
-            Self::Twenty(spectrum) => spectrum.push(sum),
-            Self::Forty(spectrum) => spectrum.push(sum),
-        }
+        Self::push(self, sum);
     }
 
     fn powers(&self) -> [f32; BINS] {
-        match self {
-            Self::Ten(spectrum) => spectrum.powers(),
-            Self::Twenty(spectrum) => spectrum.powers(),
-            Self::Forty(spectrum) => spectrum.powers(),
-        }
+        Self::powers(self)
     }
 }
 

@@ -15,7 +15,6 @@ use crate::train::table::{Standard, Table};
 /// Most folds that sessions are left out in.
 const FOLDS_MAX: usize = 5;
 
-/// A way to learn.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Candidate {
     pub shyness: f32,
@@ -41,29 +40,23 @@ const fn few(shyness: f32) -> Candidate {
     Candidate { shyness, ridge: 4e-3, warm: true, epochs: 4, learning_rate: 3e-4, decay: 1e-1 }
 }
 
-/// A weighted sum of features on the common scale.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Linear {
-    pub weights: Vec<f32>,
-    pub bias: f32,
-}
+/// Weights and bias, on the common scale.
+pub type Linear = (Vec<f32>, f32);
 
-impl Linear {
-    /// Logistic regression; with `balanced`, rows of the rarer kind count so many times that both kinds count about alike.
-    fn logistic(table: &Table, standard: &Standard, ridge: f64, balanced: bool) -> Self {
-        let slips = table.slips.iter().filter(|&&slips| slips).count();
-        let (rare, often) = (slips.min(table.len() - slips), slips.max(table.len() - slips));
-        let times = if balanced { (often as f64 / rare.max(1) as f64).round().max(1.0) } else { 1.0 };
-        let rare_slips = slips < table.len() - slips;
-        let rows = standard.apply(table);
-        let ridge = ridge * (often as f64 + times * rare as f64);
-        let (weights, bias) = equations::logistic(FEATURES, table.len(), ridge, |n, factors| {
-            let row = &rows[n * FEATURES..][..FEATURES];
-            factors.iter_mut().zip(row).for_each(|(to, &x)| *to = x.into());
-            (table.slips[n], if table.slips[n] == rare_slips { times } else { 1.0 })
-        });
-        Self { weights: weights.into_iter().map(|weight| weight as f32).collect(), bias: bias as f32 }
-    }
+/// Logistic regression; with `balanced`, rows of the rarer kind count so many times that both kinds count about alike.
+fn logistic(table: &Table, standard: &Standard, ridge: f64, balanced: bool) -> Linear {
+    let slips = table.slips.iter().filter(|&&slips| slips).count();
+    let (rare, often) = (slips.min(table.count() - slips), slips.max(table.count() - slips));
+    let times = if balanced { (often as f64 / rare.max(1) as f64).round().max(1.0) } else { 1.0 };
+    let rare_slips = slips < table.count() - slips;
+    let rows = standard.apply(table);
+    let ridge = ridge * (often as f64 + times * rare as f64);
+    let (weights, bias) = equations::logistic(FEATURES, table.count(), ridge, |n, factors| {
+        let row = &rows[n * FEATURES..][..FEATURES];
+        factors.iter_mut().zip(row).for_each(|(to, &x)| *to = x.into());
+        (table.slips[n], if table.slips[n] == rare_slips { times } else { 1.0 })
+    });
+    (weights.into_iter().map(|weight| weight as f32).collect(), bias as f32)
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -71,31 +64,26 @@ pub struct Choice {
     pub candidate: Candidate,
     /// Passes done of the candidate's; 0 is the logistic regression itself.
     pub passes: usize,
-    /// Accuracy or balanced accuracy on sessions it had not seen.
+    /// Balanced accuracy on sessions it had not seen.
     pub unseen: f64,
     pub threshold: f64,
     /// Slope and intercept that turn its logit into log-odds.
     pub calibration: (f64, f64),
 }
 
-/// A trained detector in single precision.
 #[derive(Clone, Debug)]
 pub struct Trained {
     pub network: Network,
     pub choice: Choice,
 }
 
-/// To learn from, and to judge by, as indices into the sequences.
-struct Fold {
-    learn: Vec<usize>,
-    judge: Vec<usize>,
+struct Fold<'a> {
+    learn: Vec<&'a Sequence>,
+    judge: Vec<&'a Sequence>,
 }
 
-/// Trains every candidate on some sessions, judges it on others, and trains the best one on all of them.
-///
-/// If the file says what is for training and what for validation, that is kept to. If not, sessions are left out in turn.
-/// The test part is not used. `progress` gets the part of the work that is done.
-/// Fails if there is too little to choose by, or the optimiser fails.
+/// Trains every candidate on some sessions, judges it on others, as the file's parts say or left out in turn, and trains the best one on
+/// all of them. `progress` gets the part of the work that is done. Fails if there is too little to choose by, or the optimiser fails.
 pub fn fit(
     sequences: &[Sequence],
     candidates: &[Candidate],
@@ -104,9 +92,9 @@ pub fn fit(
     progress: &mut dyn FnMut(f64),
 ) -> anyhow::Result<Trained> {
     let folds = folds(sequences)?;
-    let learn: Vec<usize> = (0..sequences.len()).filter(|&n| may_learn(&sequences[n])).collect();
+    let learn: Vec<&Sequence> = sequences.iter().filter(|own| may_learn(own)).collect();
     // With parts given, what is judged has learned all that there is to learn from: it need not learn it again.
-    let whole = folds.len() == 1 && folds[0].learn == learn;
+    let whole = folds.len() == 1 && folds[0].learn.len() == learn.len();
     let mut best: Option<(Choice, Option<Network>)> = None;
     let pieces = (candidates.len() * folds.len() + 1) as f64;
     for (place, &candidate) in candidates.iter().enumerate() {
@@ -114,8 +102,8 @@ pub fn fit(
         let mut judged = vec![Vec::<Judged>::new(); candidate.epochs + 1];
         let mut networks = vec![None; candidate.epochs + 1];
         for (n, fold) in folds.iter().enumerate() {
-            let unseen = Table::of(judged_by(sequences, &fold.judge, aim));
-            run(sequences, &fold.learn, candidate, candidate.epochs, (aim, seed), &mut |passes, network| {
+            let unseen = Table::of(judged_by(&fold.judge, aim));
+            run(&fold.learn, candidate, candidate.epochs, (aim, seed), &mut |passes, network| {
                 judged[passes].push(judge(network, &unseen));
                 networks[passes] = whole.then(|| network.clone());
                 let done = (place * folds.len() + n) as f64 + passes as f64 / candidate.epochs.max(1) as f64;
@@ -136,19 +124,17 @@ pub fn fit(
     }
     let Some((choice, mut network)) = best else { bail!("no candidate to choose from") };
     if network.is_none() {
-        run(sequences, &learn, choice.candidate, choice.passes, (aim, seed), &mut |_, now| {
-            network = Some(now.clone())
-        })?;
+        run(&learn, choice.candidate, choice.passes, (aim, seed), &mut |_, now| network = Some(now.clone()))?;
     }
     progress(1.0);
     let Some(network) = network else { bail!("nothing was learned") };
     Ok(Trained { network, choice })
 }
 
-fn judged_by<'a>(sequences: &'a [Sequence], judge: &[usize], aim: Aim) -> Vec<&'a Sequence> {
-    let all = || judge.iter().map(|&n| &sequences[n]);
-    let pours: Vec<&Sequence> = all().filter(|sequence| sequence.doing == Doing::Pour).collect();
-    if aim == Aim::Pours && !pours.is_empty() { pours } else { all().collect() }
+fn judged_by<'a>(judge: &[&'a Sequence], aim: Aim) -> Vec<&'a Sequence> {
+    let is_pour = |own: &&Sequence| own.doing == Doing::Pour;
+    let only_pours = aim == Aim::Pours && judge.iter().any(is_pour);
+    judge.iter().copied().filter(|own| !only_pours || is_pour(own)).collect()
 }
 
 /// Sequences that the final network learns: of the training part, or all that are for nothing in particular.
@@ -156,17 +142,16 @@ fn may_learn(sequence: &Sequence) -> bool {
     matches!(sequence.part, None | Some(Part::Train))
 }
 
-fn folds(sequences: &[Sequence]) -> anyhow::Result<Vec<Fold>> {
-    let of = |part: Part| -> Vec<usize> {
-        (0..sequences.len()).filter(|&n| sequences[n].part == Some(part)).collect()
-    };
-    let (learn, judge) = (of(Part::Train), of(Part::Validation));
+fn folds(sequences: &[Sequence]) -> anyhow::Result<Vec<Fold<'_>>> {
+    let of = |part: Part| sequences.iter().filter(|own| own.part == Some(part)).collect();
+    let (learn, judge): (Vec<_>, Vec<_>) = (of(Part::Train), of(Part::Validation));
     if !learn.is_empty() {
         ensure!(!judge.is_empty(), "the data set has a training part but no validation part to choose by");
         return Ok(vec![Fold { learn, judge }]);
     }
+    let all: Vec<&Sequence> = sequences.iter().filter(|own| may_learn(own)).collect();
     let mut sessions: Vec<&str> = Vec::new();
-    for sequence in sequences.iter().filter(|sequence| may_learn(sequence)) {
+    for sequence in &all {
         if !sessions.contains(&sequence.session.as_str()) {
             sessions.push(&sequence.session);
         }
@@ -178,38 +163,34 @@ fn folds(sequences: &[Sequence]) -> anyhow::Result<Vec<Fold>> {
         sessions.first().unwrap_or(&"none")
     );
     let count = sessions.len().min(FOLDS_MAX);
-    let fold_of = |sequence: &Sequence| {
-        sessions.iter().position(|session| **session == sequence.session).unwrap_or_default() % count
+    let is_in = |own: &Sequence, fold| {
+        sessions.iter().position(|session| *session == own.session).is_some_and(|n| n % count == fold)
     };
-    Ok((0..count)
-        .map(|fold| {
-            let (judge, learn) = (0..sequences.len())
-                .filter(|&n| may_learn(&sequences[n]))
-                .partition(|&n| fold_of(&sequences[n]) == fold);
-            Fold { learn, judge }
-        })
-        .collect())
+    let fold = |fold| {
+        let (judge, learn) = all.iter().partition(|own| is_in(own, fold));
+        Fold { learn, judge }
+    };
+    Ok((0..count).map(fold).collect())
 }
 
 /// Trains on some sequences, and shows the network after each pass; pass 0 is the logistic regression.
 fn run(
-    sequences: &[Sequence],
-    learn: &[usize],
+    learn: &[&Sequence],
     candidate: Candidate,
     passes: usize,
     (aim, seed): (Aim, u64),
     seen: &mut dyn FnMut(usize, &Network),
 ) -> anyhow::Result<()> {
-    let table = Table::of(learn.iter().map(|&n| &sequences[n]));
+    let table = Table::of(learn.iter().copied());
     let slips = table.slips.iter().filter(|&&slips| slips).count();
     ensure!(
-        slips > 0 && slips < table.len(),
+        slips > 0 && slips < table.count(),
         "of {} steps to learn from {slips} slip: both kinds are needed",
-        table.len()
+        table.count()
     );
     let standard = Standard::of(&table, candidate.shyness);
     let balanced = aim == Aim::Balanced;
-    let begin = candidate.warm.then(|| Linear::logistic(&table, &standard, candidate.ridge, balanced));
+    let begin = candidate.warm.then(|| logistic(&table, &standard, candidate.ridge, balanced));
     let mut learner = Learner::new(&standard, candidate, seed, begin.as_ref())?;
     if begin.is_some() {
         seen(0, &learner.network()?);
@@ -234,13 +215,7 @@ fn choice(candidate: Candidate, passes: usize, judged: &[Judged], aim: Aim) -> C
         all.extend(fold);
     }
     let threshold = threshold(&all, aim);
-    let of = |fold: &Judged| {
-        let score = score(fold, threshold);
-        match aim {
-            Aim::Accuracy => score.accuracy,
-            Aim::Balanced | Aim::Pours => score.balanced,
-        }
-    };
-    let unseen = judged.iter().map(of).sum::<f64>() / judged.len().max(1) as f64;
+    let unseen =
+        judged.iter().map(|fold| score(fold, threshold).balanced).sum::<f64>() / judged.len().max(1) as f64;
     Choice { candidate, passes, unseen, threshold, calibration: platt(&all) }
 }

@@ -1,5 +1,4 @@
-//! The perceptron in single precision: two hidden layers (Bamshad 2023, section 5.3; the firmware's order,
-//! [`tenax_logic::array::network`]).
+//! The perceptron in single precision, in the firmware's order of layers (Bamshad 2023, section 5.3).
 
 use candle_core::{Device, Tensor, Var};
 use candle_nn::optim::{AdamW, Optimizer, ParamsAdamW};
@@ -36,7 +35,6 @@ impl Network {
         [seen, hidden]
     }
 
-    /// A logit a row.
     pub fn logits(&self, table: &Table) -> Vec<f64> {
         let logit = |row| {
             let [_, hidden] = self.hidden(row);
@@ -80,13 +78,13 @@ impl Learner {
         let mut second = draw(H2 * H1, H1);
         let mut last = draw(H2, H2);
         let mut first_bias = vec![0.0; H1];
-        if let Some(linear) = begin {
+        if let Some((weights, bias)) = begin {
             last.fill(0.0);
             for (unit, sign) in [(0, 1.0), (1, -1.0)] {
-                for (to, weight) in first[unit * FEATURES..].iter_mut().zip(&linear.weights) {
+                for (to, weight) in first[unit * FEATURES..].iter_mut().zip(weights) {
                     *to = sign * weight;
                 }
-                first_bias[unit] = sign * linear.bias;
+                first_bias[unit] = sign * bias;
                 second[unit * H1..][..H1].fill(0.0);
                 second[unit * H1 + unit] = 1.0;
                 last[unit] = sign;
@@ -122,9 +120,9 @@ impl Learner {
         seen: &mut dyn FnMut(usize, &Network) -> bool,
     ) -> anyhow::Result<()> {
         let Candidate { epochs, learning_rate, decay, .. } = self.candidate;
-        let rows = Tensor::from_vec(self.standard.apply(table), (table.len(), FEATURES), &Device::Cpu)?;
+        let rows = Tensor::from_vec(self.standard.apply(table), (table.count(), FEATURES), &Device::Cpu)?;
         let weights = if balanced { table.class_weights() } else { [1.0; 2] };
-        let mut order: Vec<usize> = (0..table.len()).collect();
+        let mut order: Vec<usize> = (0..table.count()).collect();
         let batches = order.len().div_ceil(BATCH).max(1);
         let config = ParamsAdamW { lr: learning_rate, weight_decay: decay, ..ParamsAdamW::default() };
         let mut optimizer = AdamW::new(self.vars.to_vec(), config)?;

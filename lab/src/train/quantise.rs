@@ -13,25 +13,18 @@ const BITS: u32 = 8;
 /// Largest activation over the largest one seen, before it saturates.
 const HEADROOM: f32 = 1.5;
 
-/// Weights as integers, row by row.
+/// Weights as integers, row by row; biases; shifts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Quantised {
-    pub first: Vec<Vec<i16>>,
-    pub first_bias: Vec<i32>,
-    pub first_shift: u32,
-    pub second: Vec<Vec<i16>>,
-    pub second_bias: Vec<i32>,
-    pub second_shift: u32,
-    pub last: Vec<i16>,
-    pub last_bias: i32,
+    pub first: (Vec<Vec<i16>>, Vec<i32>, u32),
+    pub second: (Vec<Vec<i16>>, Vec<i32>, u32),
+    pub last: (Vec<i16>, i32),
     /// Integer logits for one of the float network's.
     pub per_logit: f64,
 }
 
 impl Quantised {
-    /// Rounds a network; activations are measured on `table`.
-    ///
-    /// The units of the first layer are scaled so that a unit's weights before and after it are about as large (Nagel et al. 2019,
+    /// Rounds a network; activations are measured on `table`. The units of the first layer are scaled so that a unit's weights before and after it are about as large (Nagel et al. 2019,
     /// cross-layer equalisation): a ReLU does not mind, and no unit loses more to rounding than another.
     pub fn of(network: &Network, table: &Table) -> Self {
         let network = equalised(network);
@@ -56,15 +49,15 @@ impl Quantised {
             biases.iter().map(|b| ((f64::from(*b) * scale).round() + half) as i32).collect()
         };
         let per_logit = last_scale * hidden_scale;
+        let first_biases = biases(&network.first_bias, first_scale, first_shift);
+        let second_biases = biases(&network.second_bias, second_scale * seen_scale, second_shift);
         Self {
-            first: rows(&network.first, FEATURES, first_scale),
-            first_bias: biases(&network.first_bias, first_scale, first_shift),
-            first_shift,
-            second: rows(&network.second, H1, second_scale),
-            second_bias: biases(&network.second_bias, second_scale * seen_scale, second_shift),
-            second_shift,
-            last: rows(&network.last, H2, last_scale).pop().unwrap_or_default(),
-            last_bias: (f64::from(network.last_bias) * per_logit).round() as i32,
+            first: (rows(&network.first, FEATURES, first_scale), first_biases, first_shift),
+            second: (rows(&network.second, H1, second_scale), second_biases, second_shift),
+            last: (
+                rows(&network.last, H2, last_scale).pop().unwrap_or_default(),
+                (f64::from(network.last_bias) * per_logit).round() as i32,
+            ),
             per_logit,
         }
     }
@@ -72,12 +65,11 @@ impl Quantised {
     /// Logits of a sequence in units of the float network's. Fails if a sum of the firmware's network could overflow.
     pub fn logits(&self, sequence: &Sequence) -> anyhow::Result<Vec<f64>> {
         let too_large = |_| anyhow!("a sum of the network could overflow");
+        let Self { first, second, last, .. } = self;
         let network = Mlp {
-            first: Layer::new(square(&self.first)?, fixed(&self.first_bias)?, self.first_shift)
-                .map_err(too_large)?,
-            second: Layer::new(square(&self.second)?, fixed(&self.second_bias)?, self.second_shift)
-                .map_err(too_large)?,
-            last: Layer::new([fixed(&self.last)?], [self.last_bias], 0).map_err(too_large)?,
+            first: Layer::new(square(&first.0)?, fixed(&first.1)?, first.2).map_err(too_large)?,
+            second: Layer::new(square(&second.0)?, fixed(&second.1)?, second.2).map_err(too_large)?,
+            last: Layer::new([fixed(&last.0)?], [last.1], 0).map_err(too_large)?,
         };
         let logit = |features: &Features| {
             let mut seen = [0; H1];

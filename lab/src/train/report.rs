@@ -1,6 +1,6 @@
 //! Data, choice and validation scores of a training, for people and for programs.
 
-use std::collections::BTreeMap;
+use std::collections::BTreeSet;
 use std::fmt::Write;
 
 use serde::Serialize;
@@ -8,13 +8,12 @@ use tenax_logic::array::FEATURES;
 use tenax_logic::array::structure::STRUCTURES;
 use tenax_sim::array::edges::{Chosen, FALSE_2800_MAX, FALSE_PER_HOUR_MAX};
 
-use crate::dataset::manifest::sha256;
+use crate::dataset::sha256;
 use crate::train::features::{Recipe, Sequence};
 use crate::train::fit::Choice;
 use crate::train::network::{H1, H2};
-use crate::train::score::{Judged, Score, score};
+use crate::train::score::Score;
 
-/// The data that was learned from.
 #[derive(Clone, Debug, Serialize)]
 pub struct Data {
     pub file: String,
@@ -28,7 +27,7 @@ pub struct Data {
 impl Data {
     pub fn of(file: &str, bytes: &[u8], sequences: &[&Sequence]) -> Self {
         let slips = || sequences.iter().flat_map(|own| &own.slips);
-        let sessions: std::collections::BTreeSet<_> = sequences.iter().map(|own| &own.session).collect();
+        let sessions: BTreeSet<_> = sequences.iter().map(|own| &own.session).collect();
         Self {
             file: file.into(),
             sha256: sha256(bytes),
@@ -37,26 +36,6 @@ impl Data {
             slip_steps: slips().filter(|&&slip| slip).count(),
             sessions: sessions.len(),
         }
-    }
-}
-
-/// Scores on the pours of the validation part.
-#[derive(Clone, Debug, Serialize)]
-pub struct Validation {
-    pub all: Score,
-    pub by_material: BTreeMap<String, Score>,
-}
-
-impl Validation {
-    /// None without sequences. Slip is above the threshold.
-    pub fn of(judged: &[(&Sequence, Judged)], threshold: f64) -> Option<Self> {
-        let (mut all, mut by_material) = (Judged::default(), BTreeMap::<_, Judged>::new());
-        for (sequence, judged) in judged {
-            all.extend(judged);
-            by_material.entry(sequence.material.clone()).or_default().extend(judged);
-        }
-        let by_material = by_material.into_iter().map(|(name, own)| (name, score(&own, threshold))).collect();
-        (!judged.is_empty()).then(|| Self { all: score(&all, threshold), by_material })
     }
 }
 
@@ -71,9 +50,9 @@ pub struct Report {
     pub threshold_permille: u16,
     /// The edges of the exported verdict, if there were pours to choose them by.
     pub edges: Option<Chosen>,
-    /// In single precision, and of the exported integers.
-    pub float: Option<Validation>,
-    pub exported: Option<Validation>,
+    /// On the pours of the validation part, in single precision and of the exported integers. None without pours.
+    pub float: Option<Score>,
+    pub exported: Option<Score>,
 }
 
 impl Report {
@@ -102,11 +81,7 @@ impl Report {
         );
         if let (Some(float), Some(exported)) = (&self.float, &self.exported) {
             text += "## Pours of the validation part\n\n| | steps | missed | false | accuracy | balanced | AUC |\n|---|---|---|---|---|---|---|\n";
-            let materials = exported.by_material.iter().map(|(name, score)| (name.as_str(), score));
-            for (name, score) in [("single precision", &float.all), ("**exported**", &exported.all)]
-                .into_iter()
-                .chain(materials)
-            {
+            for (name, score) in [("single precision", float), ("**exported**", exported)] {
                 let Score { steps, missed, false_alarms, accuracy, balanced, auc } = score;
                 let _ = writeln!(
                     text,

@@ -16,19 +16,22 @@ impl Judged {
         self.slips.extend(&other.slips);
     }
 
+    fn steps(&self) -> impl Iterator<Item = (f64, bool)> {
+        self.logits.iter().copied().zip(self.slips.iter().copied())
+    }
+
     fn of(&self, slip: bool) -> usize {
         self.slips.iter().filter(|&&slipped| slipped == slip).count()
     }
 }
 
-/// The quantity that a threshold maximises.
+/// What a threshold is chosen by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Aim {
-    /// The share of right steps.
-    Accuracy,
     /// The mean of sensitivity and specificity.
     Balanced,
+    /// The same in pours, with few false steps.
     Pours,
 }
 
@@ -49,46 +52,33 @@ pub struct Score {
     pub auc: f64,
 }
 
-/// Scores logits: slip is above the threshold.
+/// Slip is above the threshold.
 pub fn score(judged: &Judged, threshold: f64) -> Score {
     let (positives, negatives) = (judged.of(true), judged.of(false));
     let (mut missed, mut false_alarms) = (0, 0);
-    for (&logit, &slip) in judged.logits.iter().zip(&judged.slips) {
+    for (logit, slip) in judged.steps() {
         missed += usize::from(slip && logit <= threshold);
         false_alarms += usize::from(!slip && logit > threshold);
     }
     let steps = judged.slips.len();
     let right = |wrong: usize, of: usize| if of == 0 { 1.0 } else { 1.0 - wrong as f64 / of as f64 };
     let accuracy = right(missed + false_alarms, steps);
-    let balanced = if positives == 0 || negatives == 0 {
-        accuracy
+    let (balanced, auc) = if positives == 0 || negatives == 0 {
+        (accuracy, 0.5)
     } else {
-        (right(missed, positives) + right(false_alarms, negatives)) / 2.0
+        let balanced = (right(missed, positives) + right(false_alarms, negatives)) / 2.0;
+        (balanced, real::auc(&mut judged.steps().collect::<Vec<_>>()))
     };
-    Score { steps, missed, false_alarms, accuracy, balanced, auc: auc(judged) }
-}
-
-/// Area under the ROC curve; a half where there is only one kind of step.
-pub fn auc(judged: &Judged) -> f64 {
-    if judged.of(true) == 0 || judged.of(false) == 0 {
-        return 0.5;
-    }
-    let mut scored: Vec<(f64, bool)> =
-        judged.logits.iter().copied().zip(judged.slips.iter().copied()).collect();
-    real::auc(&mut scored)
+    Score { steps, missed, false_alarms, accuracy, balanced, auc }
 }
 
 /// The best threshold: the middle of the widest gap between logits that serves the aim best.
 pub fn threshold(judged: &Judged, aim: Aim) -> f64 {
     let (positives, negatives) = (judged.of(true).max(1) as f64, judged.of(false).max(1) as f64);
-    let (slip_costs, rest_costs) = match aim {
-        Aim::Accuracy => (1.0, 1.0),
-        Aim::Balanced | Aim::Pours => (1.0 / positives, 1.0 / negatives),
-    };
+    let (slip_costs, rest_costs) = (1.0 / positives, 1.0 / negatives);
     let false_max = if aim == Aim::Pours { FALSE_MAX * judged.slips.len() as f64 } else { f64::INFINITY };
     let mut false_steps = judged.of(false) as f64;
-    let mut order: Vec<(f64, bool)> =
-        judged.logits.iter().copied().zip(judged.slips.iter().copied()).collect();
+    let mut order: Vec<(f64, bool)> = judged.steps().collect();
     order.sort_by(|a, b| a.0.total_cmp(&b.0));
     let Some(first) = order.first() else { return 0.0 };
     let mut cost = judged.of(false) as f64 * rest_costs;
@@ -120,30 +110,24 @@ pub fn threshold(judged: &Judged, aim: Aim) -> f64 {
 pub fn platt(judged: &Judged) -> (f64, f64) {
     let (positives, negatives) = (judged.of(true) as f64, judged.of(false) as f64);
     let targets = [1.0 / (negatives + 2.0), (positives + 1.0) / (positives + 2.0)];
-    let spread = {
-        let n = judged.logits.len().max(1) as f64;
-        let mean = judged.logits.iter().sum::<f64>() / n;
-        (judged.logits.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / n).sqrt().max(1e-12)
+    let n = judged.logits.len().max(1) as f64;
+    let mean = judged.logits.iter().sum::<f64>() / n;
+    let spread = (judged.logits.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / n).sqrt().max(1e-12);
+    let steps = || judged.steps().map(|(x, slip)| (x / spread, targets[usize::from(slip)]));
+    let loss = |slope: f64, intercept: f64| -> f64 {
+        let of = |(x, target): (f64, f64)| {
+            let z = slope * x + intercept;
+            z.max(0.0) - z * target + (-z.abs()).exp().ln_1p()
+        };
+        steps().map(of).sum()
     };
     let (mut slope, mut intercept) = (1.0, ((positives + 1.0) / (negatives + 1.0)).ln());
-    let loss = |slope: f64, intercept: f64| -> f64 {
-        judged
-            .logits
-            .iter()
-            .zip(&judged.slips)
-            .map(|(x, &slip)| {
-                let z = slope * x / spread + intercept;
-                z.max(0.0) - z * targets[usize::from(slip)] + (-z.abs()).exp().ln_1p()
-            })
-            .sum()
-    };
     let mut now = loss(slope, intercept);
     for _ in 0..100 {
         let (mut g, mut h) = ([0.0; 2], [1e-9, 0.0, 1e-9]);
-        for (x, &slip) in judged.logits.iter().zip(&judged.slips) {
-            let x = x / spread;
+        for (x, target) in steps() {
             let p = 1.0 / (1.0 + (-(slope * x + intercept)).exp());
-            let (error, weight) = (p - targets[usize::from(slip)], p * (1.0 - p));
+            let (error, weight) = (p - target, p * (1.0 - p));
             g = [g[0] + error * x, g[1] + error];
             h = [h[0] + weight * x * x, h[1] + weight * x, h[2] + weight];
         }
@@ -186,7 +170,6 @@ mod tests {
         let at_zero = score(&example, 0.0);
         assert_eq!((at_zero.steps, at_zero.missed, at_zero.false_alarms), (6, 0, 1));
         assert!((at_zero.auc - 8.5 / 9.0).abs() < 1e-12);
-        assert_eq!(threshold(&example, Aim::Accuracy), 1.75);
         // Ten times as many quiet steps: one false alarm in them costs less than a missed step of three.
         let many: Vec<(f64, bool)> = (0..30).map(|n| (-5.0 - f64::from(n), false)).collect();
         let mut unequal = judged(&many);

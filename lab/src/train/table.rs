@@ -21,12 +21,8 @@ impl Table {
         table
     }
 
-    pub fn len(&self) -> usize {
+    pub fn count(&self) -> usize {
         self.slips.len()
-    }
-
-    pub fn is_empty(&self) -> bool {
-        self.slips.is_empty()
     }
 
     pub fn rows(&self) -> impl Iterator<Item = &[f32]> {
@@ -36,8 +32,8 @@ impl Table {
     /// Weights of a row without slip and of one with slip: both kinds count alike, and the mean is 1.
     pub fn class_weights(&self) -> [f32; 2] {
         let slips = self.slips.iter().filter(|&&slips| slips).count();
-        let weight = |count: usize| self.len().max(1) as f32 / (2.0 * count.max(1) as f32);
-        [weight(self.len() - slips), weight(slips)]
+        let weight = |count: usize| self.count().max(1) as f32 / (2.0 * count.max(1) as f32);
+        [weight(self.count() - slips), weight(slips)]
     }
 }
 
@@ -53,7 +49,7 @@ impl Standard {
     /// objects apart rather than their sliding. At 1 every feature gets a deviation of 1; below, features of one kind share their scale,
     /// so that a quiet element is not amplified.
     pub fn of(table: &Table, shyness: f32) -> Self {
-        let rows = table.len().max(1) as f64;
+        let rows = table.count().max(1) as f64;
         let moment = |feature: usize, about: f64, power: i32| -> f64 {
             table.rows().map(|row| (f64::from(row[feature]) - about).powi(power)).sum::<f64>() / rows
         };

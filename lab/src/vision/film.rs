@@ -1,32 +1,89 @@
-//! A video, a folder of pictures or a camera, followed from its first picture to its last.
+//! A video or a camera, decoded by the `ffmpeg` program and followed from its first picture to its last.
 
+use std::collections::BTreeMap;
 use std::fs::File;
+use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::process::{Child, ChildStdout, Command, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, anyhow, bail};
 use serde::Serialize;
-use tenax_vision::frame::Frame;
+use tenax_vision::frame::{FRAME_BYTES, Frame, HEIGHT, WIDTH};
 use tenax_vision::quality::Blind;
-use tenax_vision::rectify::Rectifier;
 use tenax_vision::{Camera, Summary};
 
-use super::feed::{Fault, Feed, Next};
-use super::source::Source;
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Source {
+    Video(PathBuf),
+    /// A camera of Video4Linux, such as /dev/video0.
+    Device(PathBuf),
+}
+
+impl Source {
+    /// Starts `ffmpeg`, which gives planes green, blue, red. Fails if the source is not there, or `ffmpeg` is not installed.
+    fn open(&self) -> Result<Decoder> {
+        let (Self::Video(path) | Self::Device(path)) = self;
+        let size = format!("{WIDTH}x{HEIGHT}");
+        if !path.exists() {
+            bail!("{} is not there", path.display());
+        }
+        let mut command = Command::new("ffmpeg");
+        command.args(["-nostdin", "-v", "error"]);
+        if matches!(self, Self::Device(_)) {
+            command.args(["-f", "v4l2", "-video_size", &size]);
+        }
+        command.arg("-i").arg(path).args(["-fps_mode", "passthrough", "-s", &size]);
+        command.args(["-f", "rawvideo", "-pix_fmt", "gbrp", "-"]).stdout(Stdio::piped());
+        let mut ffmpeg = command.spawn().map_err(|error| match error.kind() {
+            ErrorKind::NotFound => anyhow!("the program ffmpeg decodes pictures, and it is not installed"),
+            _ => anyhow::Error::from(error).context("cannot start ffmpeg"),
+        })?;
+        let planes = ffmpeg.stdout.take().context("ffmpeg has no output")?;
+        Ok(Decoder { ffmpeg, planes })
+    }
+}
+
+struct Decoder {
+    ffmpeg: Child,
+    planes: ChildStdout,
+}
+
+impl Decoder {
+    /// Reads the next picture. False after the last. Fails if `ffmpeg` could not decode it.
+    fn next(&mut self, planes: &mut [u8]) -> Result<bool> {
+        match self.planes.read_exact(planes) {
+            Ok(()) => Ok(true),
+            Err(error) if error.kind() == ErrorKind::UnexpectedEof => {
+                if !self.ffmpeg.wait().context("ffmpeg does not end")?.success() {
+                    bail!("ffmpeg cannot decode it");
+                }
+                Ok(false)
+            }
+            Err(error) => Err(error).context("cannot read from ffmpeg"),
+        }
+    }
+}
+
+impl Drop for Decoder {
+    fn drop(&mut self) {
+        // After an error ffmpeg may still be decoding.
+        let _ = self.ffmpeg.kill();
+        let _ = self.ffmpeg.wait();
+    }
+}
 
 #[derive(Clone, Debug)]
 pub struct Plan {
     pub source: Source,
-    /// Pictures a second, unless the video says it.
-    pub rate_hz: Option<f64>,
+    /// Pictures a second of a video.
+    pub rate_hz: f64,
+    /// Folder of markers.csv and object.csv.
     pub folder: Option<PathBuf>,
-    /// Whether they come as a camera's do and not as fast as they are decoded.
+    /// Whether a video is followed at its rate instead of as fast as it is decoded.
     pub live: bool,
-    pub fault: Option<Fault>,
-    /// Whether a hand holds something, where somebody knows: from then on the object's colours are known.
-    pub holds: Option<Arc<AtomicBool>>,
 }
 
 #[derive(Clone, Debug, Default, Serialize)]
@@ -42,66 +99,52 @@ pub struct Report {
     pub object_share: f64,
     /// Share of the pictures in which it slips.
     pub slip_share: f64,
-    /// Pictures that were not to be believed.
-    pub blind: Blindness,
+    /// Pictures that were not to be believed, and times that none came for 200 ms.
+    pub blind: BTreeMap<&'static str, usize>,
 }
 
-#[derive(Clone, Copy, Debug, Default, Serialize)]
-pub struct Blindness {
-    /// None came for too long: times.
-    pub lost: usize,
-    /// The picture was too old.
-    pub late: usize,
-    pub frozen: usize,
-    pub covered: usize,
-}
-
-#[derive(Debug)]
-pub enum Told<'a> {
-    /// A picture, and its age, ms.
-    Picture(&'a Camera, &'a Summary, u16),
-    /// Why the camera has nothing to say while no picture comes.
-    Silence(Blind),
-}
-
-impl Plan {
-    fn rate_hz(&self) -> f64 {
-        self.rate_hz.or_else(|| self.source.rate_hz()).unwrap_or(30.0)
-    }
-
-    /// Opens the source. Fails if it is not there.
-    pub fn open(&self) -> Result<Feed> {
-        Feed::open(&self.source, self.rate_hz(), self.fault, self.live)
+const fn name(blind: Blind) -> &'static str {
+    match blind {
+        Blind::Lost(_) => "lost",
+        Blind::Late(_) => "late",
+        Blind::Frozen(_) => "frozen",
+        Blind::Covered => "covered",
     }
 }
 
-/// Follows all of a source's pictures; `told` hears of each. Fails if pictures cannot be read, or results not written.
-pub fn follow(plan: &Plan, mut feed: Feed, mut told: impl FnMut(Told<'_>) -> Result<()>) -> Result<Report> {
+/// Follows all of a source's pictures; the object's colours are learned while `holds` is false. `told` gets each summary and its
+/// picture's age, ms. Fails if pictures cannot be read, or results not written.
+pub fn follow(
+    plan: &Plan,
+    holds: &AtomicBool,
+    mut told: impl FnMut(&Summary, u16) -> Result<()>,
+) -> Result<Report> {
     let mut tables = plan.folder.as_deref().map(Tables::create).transpose()?;
+    let mut decoder = plan.source.open()?;
+    let mut planes = vec![0; FRAME_BYTES];
     let mut camera = Camera::default();
-    if let Some(focal_px) = plan.source.focal_px() {
-        camera.rectify(Rectifier::new(focal_px));
-    }
     let mut report = Report::default();
     let mut worked = Duration::ZERO;
     let (mut updates, mut failed, mut objects, mut slips) = (0, 0, 0, 0);
     let mut last = Vec::new();
-    loop {
-        let (planes, taken_ms, now_ms) = match feed.take()? {
-            Next::Picture(planes, taken_ms, now_ms) => (planes, taken_ms, now_ms),
-            Next::Silence(now_ms) => {
-                if let Some(blind) = camera.silence(now_ms) {
-                    report.blind.lost += 1;
-                    told(Told::Silence(blind))?;
-                }
-                continue;
+    let mut begun = None;
+    while decoder.next(&mut planes)? {
+        let begun = *begun.get_or_insert_with(Instant::now);
+        let due = Duration::from_secs_f64(report.frames as f64 / plan.rate_hz);
+        // A camera's picture comes when it is taken, as far as anybody knows.
+        let (taken, now) = match &plan.source {
+            Source::Device(_) => (begun.elapsed(), begun.elapsed()),
+            Source::Video(_) if plan.live => {
+                sleep(due.saturating_sub(begun.elapsed()));
+                (due, begun.elapsed())
             }
-            Next::End => break,
+            Source::Video(_) => (due, due),
         };
-        let frame = Frame::from_gbrp(&planes[..]).context("a picture's size")?;
-        let learn = plan.holds.as_ref().is_none_or(|holds| !holds.load(Ordering::Relaxed));
+        let [taken_ms, now_ms] = [taken, now].map(|at| at.as_millis() as u32);
+        let silence = camera.silence(now_ms).filter(|_| report.frames > 0);
+        let frame = Frame::from_gbrp(&planes).context("a picture's size")?;
         let start = Instant::now();
-        let summary = camera.picture(&frame, learn, taken_ms, now_ms);
+        let summary = camera.picture(&frame, !holds.load(Ordering::Relaxed), taken_ms, now_ms);
         worked += start.elapsed();
         if let Some(markers) = camera.markers() {
             last.resize(markers.len(), None);
@@ -117,17 +160,13 @@ pub fn follow(plan: &Plan, mut feed: Feed, mut told: impl FnMut(Told<'_>) -> Res
         }
         objects += usize::from(summary.object.is_some());
         slips += usize::from(summary.slips());
-        match summary.blind {
-            Some(Blind::Late(_)) => report.blind.late += 1,
-            Some(Blind::Frozen(_)) => report.blind.frozen += 1,
-            Some(Blind::Covered) => report.blind.covered += 1,
-            Some(Blind::Lost(_)) | None => (),
+        for blind in silence.into_iter().chain(summary.blind) {
+            *report.blind.entry(name(blind)).or_default() += 1;
         }
         if let Some(tables) = &mut tables {
             tables.write(&camera, &summary)?;
         }
-        let age_ms = now_ms.saturating_sub(taken_ms).try_into().unwrap_or(u16::MAX);
-        told(Told::Picture(&camera, &summary, age_ms))?;
+        told(&summary, now_ms.saturating_sub(taken_ms).try_into().unwrap_or(u16::MAX))?;
         report.frames += 1;
     }
     let share = |part: usize, all: usize| part as f64 / all.max(1) as f64;
@@ -139,7 +178,6 @@ pub fn follow(plan: &Plan, mut feed: Feed, mut told: impl FnMut(Told<'_>) -> Res
     Ok(report)
 }
 
-/// markers.csv and object.csv.
 struct Tables {
     markers: csv::Writer<File>,
     object: csv::Writer<File>,

@@ -2,10 +2,10 @@
 
 use std::time::{Duration, Instant};
 
-use anyhow::{Context, Result};
-use serde::Serialize;
+use anyhow::Context;
+use serde::{Serialize, Serializer};
 use tenax_scene::picture::story::State;
-use tenax_scene::picture::{Options, Session, Stress, Truth};
+use tenax_scene::picture::{Options, Session, Truth};
 use tenax_vision::frame::{FRAME_BYTES, Frame};
 use tenax_vision::rectify::Rectifier;
 use tenax_vision::{Camera, Summary};
@@ -21,150 +21,88 @@ const AFTER: u32 = 8;
 /// Shear below which a force has no direction, px.
 const SHEAR_MIN_PX: f64 = 1.0;
 
-/// Shares and errors over pictures. Null where the scene had no occasion.
-#[derive(Clone, Copy, Debug, Default, Serialize)]
-pub struct Figures {
-    /// Share of the drawn markers that were calibrated.
-    pub markers_found: Option<f64>,
-    /// Share of markers' updates that failed.
-    pub failed_share: Option<f64>,
-    /// Distance of known markers from where they are imaged, px rms.
-    pub marker_px_rms: Option<f64>,
-    /// Direction of the shear, degrees rms.
-    pub force_deg_rms: Option<f64>,
-    /// Angle of a held object that is wholly in view, degrees rms.
-    pub angle_deg_rms: Option<f64>,
-    /// Share of the pictures with an object partly in view in which that is reported.
-    pub cut_said: Option<f64>,
-    /// Share of the pictures with an object held in which it is seen.
-    pub object_seen: Option<f64>,
-    /// Share of the pictures without an object in which one is seen.
-    pub object_false: Option<f64>,
-    /// Share of the pictures with slip in which it is reported.
-    pub recall: Option<f64>,
-    /// Share of the pictures without slip in which it is reported, of all and of those with a moving background.
-    pub false_rate: Option<f64>,
-    pub false_rate_moving_background: Option<f64>,
-}
-
-#[derive(Clone, Debug, Default, Serialize)]
-pub struct Report {
-    /// The first session's.
-    pub seed: u64,
-    pub frames: usize,
-    /// Pictures a second that one core follows, markers and object together.
-    pub fps_per_core: f64,
-    #[serde(flatten)]
-    pub all: Figures,
-    /// In the order of their seeds.
-    pub by_session: Vec<Figures>,
-}
-
-/// A share, or a sum of squares, and its count.
+/// A share or mean; null where there was no occasion.
 #[derive(Clone, Copy, Debug, Default)]
-struct Sum {
+pub struct Mean {
     sum: f64,
     count: u64,
 }
 
-impl Sum {
+impl Mean {
+    fn add(&mut self, value: f64) {
+        (self.sum, self.count) = (self.sum + value, self.count + 1);
+    }
+
     fn count(&mut self, yes: bool) {
-        (self.sum, self.count) = (self.sum + f64::from(u8::from(yes)), self.count + 1);
+        self.add(f64::from(u8::from(yes)));
     }
 
-    fn square(&mut self, off: f64) {
-        (self.sum, self.count) = (self.sum + off * off, self.count + 1);
-    }
-
-    fn share(self) -> Option<f64> {
+    fn value(&self) -> Option<f64> {
         (self.count > 0).then(|| self.sum / self.count as f64)
     }
+}
 
-    fn rms(self) -> Option<f64> {
-        self.share().map(f64::sqrt)
+impl Serialize for Mean {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        self.value().serialize(to)
     }
 }
 
-#[derive(Clone, Copy, Debug, Default)]
-struct Scores {
-    markers_found: Sum,
-    failed: Sum,
-    marker_px: Sum,
-    force_deg: Sum,
-    angle_deg: Sum,
-    cut_said: Sum,
-    seen: Sum,
-    unseen: Sum,
-    recall: Sum,
-    false_rate: Sum,
-    false_moving: Sum,
+/// The root of a mean of squares.
+fn root<S: Serializer>(squares: &Mean, to: S) -> Result<S::Ok, S::Error> {
+    squares.value().map(f64::sqrt).serialize(to)
 }
 
-impl Scores {
-    fn sums(&mut self) -> [&mut Sum; 11] {
-        [
-            &mut self.markers_found,
-            &mut self.failed,
-            &mut self.marker_px,
-            &mut self.force_deg,
-            &mut self.angle_deg,
-            &mut self.cut_said,
-            &mut self.seen,
-            &mut self.unseen,
-            &mut self.recall,
-            &mut self.false_rate,
-            &mut self.false_moving,
-        ]
-    }
-
-    fn add(&mut self, mut other: Self) {
-        for (own, other) in self.sums().into_iter().zip(other.sums()) {
-            (own.sum, own.count) = (own.sum + other.sum, own.count + other.count);
-        }
-    }
-
-    fn figures(&self) -> Figures {
-        Figures {
-            markers_found: self.markers_found.share(),
-            failed_share: self.failed.share(),
-            marker_px_rms: self.marker_px.rms(),
-            force_deg_rms: self.force_deg.rms(),
-            angle_deg_rms: self.angle_deg.rms(),
-            cut_said: self.cut_said.share(),
-            object_seen: self.seen.share(),
-            object_false: self.unseen.share(),
-            recall: self.recall.share(),
-            false_rate: self.false_rate.share(),
-            false_rate_moving_background: self.false_moving.share(),
-        }
-    }
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct Report {
+    pub seed: u64,
+    pub frames: usize,
+    /// Pictures a second that one core follows, markers and object together.
+    pub fps_per_core: f64,
+    /// Share of the drawn markers that were calibrated.
+    pub markers_found: Mean,
+    /// Share of markers' updates that failed.
+    pub failed_share: Mean,
+    /// Distance of known markers from where they are imaged, px rms.
+    #[serde(serialize_with = "root")]
+    pub marker_px_rms: Mean,
+    /// Direction of the shear, degrees rms.
+    #[serde(serialize_with = "root")]
+    pub force_deg_rms: Mean,
+    /// Angle of a held object that is wholly in view, degrees rms.
+    #[serde(serialize_with = "root")]
+    pub angle_deg_rms: Mean,
+    /// Share of the pictures with an object partly in view in which that is reported.
+    pub cut_said: Mean,
+    /// Share of the pictures with an object held in which it is seen.
+    pub object_seen: Mean,
+    /// Share of the pictures without an object in which one is seen.
+    pub object_false: Mean,
+    /// Share of the pictures with slip in which it is reported.
+    pub recall: Mean,
+    /// Share of the pictures without slip in which it is reported, of all and of those with a moving background.
+    pub false_rate: Mean,
+    pub false_rate_moving_background: Mean,
 }
 
-/// Draws and follows sessions under some stress. Fails if a picture has another size than the camera wants, which no session draws.
-pub fn score(seed: u64, sessions: u64, stress: Stress) -> Result<Report> {
-    let mut scores = Scores::default();
-    let (mut frames, mut worked) = (0, Duration::ZERO);
-    let mut by_session = Vec::new();
+/// Draws and follows sessions. Fails if a picture has another size than the camera wants, which no session draws.
+pub fn score(seed: u64, sessions: u64) -> anyhow::Result<Report> {
+    let mut report = Report { seed, ..Report::default() };
+    let mut worked = Duration::ZERO;
     for session in 0..sessions {
-        let mut own = Scores::default();
-        follow(seed.wrapping_add(session), stress, &mut own, (&mut frames, &mut worked))?;
-        scores.add(own);
-        by_session.push(own.figures());
+        worked += follow(seed.wrapping_add(session), &mut report)?;
     }
-    let fps_per_core = frames as f64 / worked.as_secs_f64().max(1e-9);
-    Ok(Report { seed, frames, fps_per_core, all: scores.figures(), by_session })
+    report.fps_per_core = report.frames as f64 / worked.as_secs_f64().max(1e-9);
+    Ok(report)
 }
 
-fn follow(
-    seed: u64,
-    stress: Stress,
-    scores: &mut Scores,
-    (frames, worked): (&mut usize, &mut Duration),
-) -> Result<()> {
-    let mut session = Session::under(Options { seed, rate_hz: RATE_HZ, fisheye: true }, stress);
+/// Follows a session; gives the time that the camera took.
+fn follow(seed: u64, report: &mut Report) -> anyhow::Result<Duration> {
+    let mut session = Session::new(Options { seed, rate_hz: RATE_HZ, fisheye: true });
     let mut camera = Camera::default();
     camera.rectify(Rectifier::new(session.lens().focal_px as f32));
     let mut planes = vec![0; FRAME_BYTES];
+    let mut worked = Duration::ZERO;
     let mut pairs: Option<Vec<(usize, usize)>> = None;
     let mut before: Option<State> = None;
     let mut since_slip = AFTER;
@@ -173,8 +111,8 @@ fn follow(
         let now_ms = (truth.t_s * 1e3) as u32;
         let start = Instant::now();
         let summary = camera.picture(&frame, !truth.gripped, now_ms, now_ms);
-        *worked += start.elapsed();
-        *frames += 1;
+        worked += start.elapsed();
+        report.frames += 1;
         if let Some(markers) = camera.markers() {
             let pairs = pairs.get_or_insert_with(|| {
                 let near = |(own, marker): (usize, &tenax_vision::markers::Marker)| {
@@ -185,9 +123,9 @@ fn follow(
                 markers.iter().enumerate().filter_map(near).collect()
             });
             for &(own, drawn) in pairs.iter() {
-                scores.failed.count(markers[own].found.is_err());
+                report.failed_share.count(markers[own].found.is_err());
                 if markers[own].found.is_ok() && markers[own].known() {
-                    scores.marker_px.square(far(markers[own].at, truth.markers[drawn].0));
+                    report.marker_px_rms.add(far(markers[own].at, truth.markers[drawn].0).powi(2));
                 }
             }
         }
@@ -195,13 +133,13 @@ fn follow(
         since_slip = if moved > SLIPS_PX / 6.0 { 0 } else { since_slip + 1 };
         let background = before.is_some_and(|before| before.background != truth.state.background);
         before = Some(truth.state);
-        judge(&truth, &summary, (moved, since_slip, background), scores);
+        judge(&truth, &summary, (moved, since_slip, background), report);
     }
     for at in 0..session.markers() {
         let found = pairs.as_ref().is_some_and(|pairs| pairs.iter().any(|&(_, drawn)| drawn == at));
-        scores.markers_found.count(found);
+        report.markers_found.count(found);
     }
-    Ok(())
+    Ok(worked)
 }
 
 fn far(at: tenax_vision::Point, (x, y): (f64, f64)) -> f64 {
@@ -219,40 +157,40 @@ fn judge(
     truth: &Truth,
     summary: &Summary,
     (moved, since_slip, background): (f64, u32, bool),
-    scores: &mut Scores,
+    report: &mut Report,
 ) {
     // Until the markers are calibrated there is nothing to judge.
     if summary.markers == 0 {
         return;
     }
     if !truth.in_view {
-        scores.unseen.count(summary.object.is_some());
+        report.object_false.count(summary.object.is_some());
     }
     if let (true, Some(force)) = (truth.gripped, summary.forces) {
         let (x, y) = truth.state.shear_px;
         if x.hypot(y) >= SHEAR_MIN_PX {
             let off = f64::from(force.y).atan2(force.x.into()) - y.atan2(x);
-            scores.force_deg.square(wrapped(off, std::f64::consts::TAU).to_degrees());
+            report.force_deg_rms.add(wrapped(off, std::f64::consts::TAU).to_degrees().powi(2));
         }
     }
     if truth.gripped {
-        scores.seen.count(summary.object.is_some());
+        report.object_seen.count(summary.object.is_some());
         if moved > SLIPS_PX {
-            scores.recall.count(summary.slips());
+            report.recall.count(summary.slips());
         } else if since_slip > AFTER {
-            scores.false_rate.count(summary.slips());
+            report.false_rate.count(summary.slips());
             if background {
-                scores.false_moving.count(summary.slips());
+                report.false_rate_moving_background.count(summary.slips());
             }
         }
     }
     if let Some(object) = summary.object {
         if truth.whole && truth.gripped && !object.cut {
             let off = f64::from(object.angle_rad) - truth.state.angle_rad;
-            scores.angle_deg.square(wrapped(off, std::f64::consts::PI).to_degrees());
+            report.angle_deg_rms.add(wrapped(off, std::f64::consts::PI).to_degrees().powi(2));
         }
         if truth.in_view && !truth.whole {
-            scores.cut_said.count(object.cut);
+            report.cut_said.count(object.cut);
         }
     }
 }

@@ -1,6 +1,5 @@
-//! The wearer's muscles on real recordings of two sessions: each goes through its recipe's front end, is read as the board reads it, and
-//! meets the muscles' module, calibrated from one repetition of rest, wrist flexion (close) and wrist extension (open). Nothing is
-//! asserted of a repetition that it was calibrated from.
+//! The wearer's muscles on real recordings of two sessions, calibrated from one repetition of rest, wrist flexion (close) and wrist
+//! extension (open). Nothing is asserted of a repetition that it was calibrated from.
 
 use std::path::Path;
 
@@ -17,8 +16,7 @@ fn sessions() -> Vec<Session> {
 #[test]
 #[cfg_attr(not(recordings), ignore = "no recordings in ../shared/data")]
 fn sessions_keep_their_bars() {
-    // First session: 0.98 before a wish was averaged over 0.13 s and stood for 40 ms; one flexion drives the extensor more for its
-    // first 0.75 s.
+    // First session: one flexion drives the extensor more for its first 0.75 s.
     for (session, windows_right) in sessions().iter().zip([0.92, 0.94]) {
         let report = session.score(&FITTED);
         println!("{report:#?}");
@@ -54,7 +52,7 @@ fn without_calibration_nothing_wrong_moves_the_hand() {
 #[cfg_attr(not(recordings), ignore = "no recordings in ../shared/data")]
 fn an_electrode_that_moved_still_moves_nothing_at_rest() {
     for session in sessions() {
-        let model = session.calibrations()[0].model.expect("it separates");
+        let model = session.calibrations[0].model.expect("it separates");
         for gains in [[0.87, 1.0], [1.15, 1.0], [1.0, 0.87], [1.0, 1.15], [0.87, 0.87], [1.15, 1.15]] {
             let mut windows = [0; 2];
             for movement in &session.movements {

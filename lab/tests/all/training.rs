@@ -52,13 +52,10 @@ fn features_are_the_firmwares_bit_for_bit() {
                 ..PreprocessorConfig::DEFAULT
             };
             let mut firmware = <Preprocessor>::new(config);
-            let expected: Vec<_> = recording
-                .steps
-                .iter()
-                .filter_map(|step| firmware.push(&step.samples.map(Some)).copied())
-                .collect();
-            let found = sequence(&recording, &recipe).features;
-            assert_eq!(found, expected);
+            let steps = recording.steps.iter();
+            let expected: Vec<_> =
+                steps.filter_map(|step| firmware.push(&step.samples.map(Some)).copied()).collect();
+            assert_eq!(sequence(&recording, &recipe).features, expected);
         }
     }
 }
@@ -66,7 +63,7 @@ fn features_are_the_firmwares_bit_for_bit() {
 #[test]
 fn what_can_be_learned_is_learned_and_rounding_costs_little() {
     let sequences = sequences(&trembling(1), &Recipe::FIRMWARE);
-    let trained: Trained = fit(&sequences, &[QUICK], Aim::Accuracy, 1, &mut |_| {}).unwrap();
+    let trained: Trained = fit(&sequences, &[QUICK], Aim::Balanced, 1, &mut |_| {}).unwrap();
     // A window of ten remembers a slip for a while: half of it, twice in eighty steps, is the best that can be.
     assert!(trained.choice.unseen > 0.85, "{:?}", trained.choice);
     let table = Table::of(&sequences);
@@ -87,7 +84,7 @@ fn the_same_seed_gives_the_same_weights_and_another_gives_others() {
     let sequences = sequences(&trembling(1), &Recipe::FIRMWARE);
     let network = |seed| {
         let cold = Candidate { warm: false, ..QUICK };
-        fit(&sequences, &[cold], Aim::Accuracy, seed, &mut |_| {}).unwrap().network
+        fit(&sequences, &[cold], Aim::Balanced, seed, &mut |_| {}).unwrap().network
     };
     assert_eq!(network(3), network(3));
     assert_ne!(network(3), network(4));
@@ -95,19 +92,14 @@ fn the_same_seed_gives_the_same_weights_and_another_gives_others() {
 
 #[test]
 fn too_little_to_choose_by_is_said() {
-    let mut one = trembling(1);
-    for recording in &mut one {
-        recording.session = "cup".into();
+    let (mut one, mut quiet) = (trembling(1), trembling(1));
+    one.iter_mut().for_each(|recording| recording.session = "cup".into());
+    quiet.iter_mut().flat_map(|recording| &mut recording.steps).for_each(|step| step.slip = false);
+    for (recordings, said) in [(one, "at least two are needed"), (quiet, "both kinds are needed")] {
+        let sequences = sequences(&recordings, &Recipe::FIRMWARE);
+        let error = fit(&sequences, &[QUICK], Aim::Balanced, 1, &mut |_| {}).unwrap_err();
+        assert!(error.to_string().contains(said), "{error}");
     }
-    let said = fit(&sequences(&one, &Recipe::FIRMWARE), &[QUICK], Aim::Balanced, 1, &mut |_| {}).unwrap_err();
-    assert!(said.to_string().contains("at least two are needed"), "{said}");
-    let mut quiet = trembling(1);
-    for step in quiet.iter_mut().flat_map(|recording| &mut recording.steps) {
-        step.slip = false;
-    }
-    let said =
-        fit(&sequences(&quiet, &Recipe::FIRMWARE), &[QUICK], Aim::Balanced, 1, &mut |_| {}).unwrap_err();
-    assert!(said.to_string().contains("both kinds are needed"), "{said}");
 }
 
 /// Learned from four real objects, scored on two others: the bar of the project is 0.90 a step.

@@ -1,4 +1,4 @@
-//! `tenax vision`: its report's keys, its bars on drawn scenes, and the real sensor's loads.
+//! `tenax vision`: its report's keys, and its bars on drawn scenes.
 
 use std::process::Command;
 
@@ -15,16 +15,11 @@ fn vision(args: &[&str]) -> Value {
 /// plain that noise looked like slip, and 948 one with a spot of the wall at its end.
 #[test]
 fn a_held_object_is_seen_and_slips_only_when_it_does() {
-    for (seed, sessions) in [("77", "2"), ("87", "1"), ("901", "1"), ("948", "1")] {
-        let report = vision(&["--sessions", sessions, "--seed", seed, "--report", "json"]);
-        let own = report["by_session"].as_array().expect("an array");
-        assert_eq!(Some(own.len()), sessions.parse().ok());
-        for own in own {
-            let number = |key: &str| own[key].as_f64().unwrap_or_else(|| panic!("no {key}: {report}"));
-            assert!(number("object_seen") >= 0.95 && number("recall") >= 0.75, "{report}");
-            assert!(number("false_rate") <= 0.02, "{report}");
-        }
-        assert!(report["angle_deg_rms"].as_f64().is_some_and(|angle| angle <= 1.0), "{report}");
+    for seed in ["77", "78", "87", "901", "948"] {
+        let report = vision(&["--sessions", "1", "--seed", seed, "--report", "json"]);
+        let number = |key: &str| report[key].as_f64().unwrap_or_else(|| panic!("no {key}: {report}"));
+        assert!(number("object_seen") >= 0.95 && number("recall") >= 0.75, "{report}");
+        assert!(number("false_rate") <= 0.02 && number("angle_deg_rms") <= 1.0, "{report}");
     }
 }
 
@@ -43,21 +38,6 @@ fn drawn_scenes_are_seen_as_they_are() {
     assert!(number(&report["recall"]) >= 0.92, "{report}");
     assert!(number(&report["false_rate"]) <= 0.02, "{report}");
     assert!(number(&report["object_seen"]) >= 0.95, "{report}");
-}
-
-#[test]
-#[cfg_attr(not(videos), ignore = "no video in ../shared/data, or no ffmpeg")]
-fn real_loads_are_weighed_by_a_mass_that_was_left_out() {
-    let loads = concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/data/fingervision/loads.csv");
-    let light = vision(&["calibrate", "--loads", loads, "--leave-out", "135.6", "--report", "json"]);
-    let number = |value: &Value| value.as_f64().unwrap_or(f64::NAN);
-    for axis in ["x_rms_n", "z_rms_n"] {
-        assert!(number(&light["tried"][axis]) <= 0.35, "{light}");
-    }
-    // The heavy half of the loads from the light half and two weights without shear: four times beyond what it has learned.
-    let heavy = vision(&["calibrate", "--loads", loads, "--leave-out", "584", "--report", "json"]);
-    for axis in ["x_rms_n", "z_rms_n"] {
-        assert!(number(&heavy["tried"][axis]) <= 0.55, "{heavy}");
-    }
-    assert!(number(&heavy["tried"]["normal_rms_share"]) <= 0.25, "{heavy}");
+    assert!(number(&report["object_false"]) <= 0.05 && number(&report["cut_said"]) >= 0.9, "{report}");
+    assert!(number(&report["false_rate_moving_background"]) <= 0.02, "{report}");
 }

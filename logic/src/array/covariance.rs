@@ -1,27 +1,26 @@
 //! Sliding covariance of the elements' differences (Bamshad 2023, equations 3 and 4, without the means). A new
 //! column adds its outer product and the oldest takes its own away, in integers: nothing drifts.
 
-use super::{COVARIANCES, ELEMENTS};
+use super::{COVARIANCE_WINDOW, COVARIANCES, ELEMENTS};
 
-/// Covariance over the last `N` differences, 40 at most, samples^2.
+/// Covariance over the last [`COVARIANCE_WINDOW`] differences, samples^2.
 #[derive(Clone, Debug)]
-pub struct SlidingCovariance<const N: usize> {
-    window: [[i16; ELEMENTS]; N],
+pub struct SlidingCovariance {
+    window: [[i16; ELEMENTS]; COVARIANCE_WINDOW],
     oldest: usize,
     entries: [i32; COVARIANCES],
 }
 
-impl<const N: usize> Default for SlidingCovariance<N> {
+impl Default for SlidingCovariance {
     fn default() -> Self {
-        const { assert!(N >= 1 && N <= 40, "a window of 1 to 40 differences") }
-        Self { window: [[0; ELEMENTS]; N], oldest: 0, entries: [0; COVARIANCES] }
+        Self { window: [[0; ELEMENTS]; COVARIANCE_WINDOW], oldest: 0, entries: [0; COVARIANCES] }
     }
 }
 
-impl<const N: usize> SlidingCovariance<N> {
-    /// d_max of equation 2: the largest power of two of which `N` squares fit in an `i32`. For 10 it is 2^13
-    /// samples, 8 N of one element in 12.5 ms. A running maximum would make one impact deafen the detector.
-    pub const D_MAX: i32 = 1 << (i32::MAX as u32 / N as u32).isqrt().ilog2();
+impl SlidingCovariance {
+    /// d_max of equation 2: the largest power of two of which ten squares fit in an `i32`, 8 N of one element in
+    /// 12.5 ms. A running maximum would make one impact deafen the detector.
+    pub const D_MAX: i32 = 1 << (i32::MAX as u32 / COVARIANCE_WINDOW as u32).isqrt().ilog2();
 
     /// Each difference is clamped to -[`D_MAX`](Self::D_MAX)..=`D_MAX - 1` samples.
     #[inline]
@@ -29,7 +28,7 @@ impl<const N: usize> SlidingCovariance<N> {
         let new = differences.map(|d| d.clamp(-Self::D_MAX, Self::D_MAX - 1) as i16);
         let Some(column) = self.window.get_mut(self.oldest) else { return };
         let old = core::mem::replace(column, new);
-        self.oldest = if self.oldest + 1 < N { self.oldest + 1 } else { 0 };
+        self.oldest = if self.oldest + 1 < COVARIANCE_WINDOW { self.oldest + 1 } else { 0 };
         let product = |column: &[i16; ELEMENTS], row: usize, other: usize| {
             i32::from(column[row]) * i32::from(column[other])
         };
@@ -37,8 +36,7 @@ impl<const N: usize> SlidingCovariance<N> {
         self.each_entry(|entry, row, other| entry - product(&old, row, other) + product(&new, row, other));
     }
 
-    /// Sets the differences of the elements `gone` to 0 in one pass, so that ten lost elements cost no more than
-    /// one.
+    /// One pass for all of `gone`, so that ten lost elements cost no more than one.
     pub fn forget(&mut self, gone: &[bool; ELEMENTS]) {
         for column in &mut self.window {
             for (difference, &gone) in column.iter_mut().zip(gone) {

@@ -7,17 +7,14 @@ use tenax_hal_shim::detector::{DetectorHealth, DetectorId, Direction};
 use tenax_hal_shim::schedule::ARRAY_SHARES;
 
 use super::network::Mlp;
-use super::preprocess::{Features, Preprocessor, PreprocessorConfig};
-use super::{ARRAY_READ, COVARIANCE_WINDOW, HIDDEN, Reading, ShippedDetector};
+use super::preprocess::{Preprocessor, PreprocessorConfig};
+use super::{ARRAY_READ, HIDDEN, Reading, ShippedDetector};
 use crate::detectors::{Description, Detector, Said, Sensed};
 
-/// Shares of a slow frame's work, one a tick, about equally long. 0: covariance, spectrum. 1: features of the
-/// spectrum, short lags. 2: long lags, units of the first layer. 3: more of them. 4: the rest, and the
-/// verdict.
+/// Shares of a slow frame's work, one a tick. 0: covariance, spectrum. 1: features of the spectrum, short
+/// lags. 2: long lags, units of the first layer. 3: more units. 4: the rest, and the verdict.
 pub const SHARES: usize = ARRAY_SHARES as usize;
-/// Units of the first layer.
 const H1: usize = HIDDEN[0];
-/// Units of the first layer that are done after shares 2 and 3.
 const SEEN: [usize; 2] = [8, 24];
 const VERDICT_SHARE: usize = SHARES - 1;
 const _: () = assert!(VERDICT_SHARE == 4);
@@ -38,28 +35,22 @@ impl ArrayVerdict {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Judgement {
     pub logit_per_nat: i32,
-    /// Confidence from which a slow frame counts as slip, per mille.
+    /// Confidences at which slip begins and ends, per mille.
     pub on_permille: u16,
-    /// Confidence below which a slow frame counts as no slip, per mille.
     pub off_permille: u16,
-    /// Consecutive slip frames after which slip is reported.
-    pub on_frames: u8,
-    /// Consecutive frames without slip after which the report ends.
-    pub off_frames: u8,
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub struct Model<const N: usize = COVARIANCE_WINDOW> {
+pub struct Model {
     pub preprocessor: PreprocessorConfig,
     pub network: Mlp,
     pub judgement: Judgement,
 }
 
 #[derive(Clone, Debug)]
-pub struct ArrayDetector<'m, const N: usize = COVARIANCE_WINDOW> {
-    model: &'m Model<N>,
-    preprocessor: Preprocessor<N>,
-    contradicted: u8,
+pub struct ArrayDetector<'m> {
+    model: &'m Model,
+    preprocessor: Preprocessor,
     unjudged: u16,
     felt: bool,
     seen: [i16; H1],
@@ -67,12 +58,11 @@ pub struct ArrayDetector<'m, const N: usize = COVARIANCE_WINDOW> {
     verdict: ArrayVerdict,
 }
 
-impl<'m, const N: usize> ArrayDetector<'m, N> {
-    pub fn new(model: &'m Model<N>) -> Self {
+impl<'m> ArrayDetector<'m> {
+    pub fn new(model: &'m Model) -> Self {
         Self {
             model,
             preprocessor: Preprocessor::new(model.preprocessor),
-            contradicted: 0,
             unjudged: u16::MAX,
             felt: false,
             seen: [0; H1],
@@ -87,8 +77,7 @@ impl<'m, const N: usize> ArrayDetector<'m, N> {
         self.verdict
     }
 
-    /// One share of [`push`](Self::push), in their order; the verdict with the last. Only share 0 uses
-    /// `reading`.
+    /// One share of [`push`](Self::push), in order; the verdict with the last. Only share 0 uses `reading`.
     pub fn work(&mut self, share: usize, reading: &Reading) -> Option<ArrayVerdict> {
         match share {
             0 => self.preprocessor.add_reading(reading),
@@ -122,13 +111,8 @@ impl<'m, const N: usize> ArrayDetector<'m, N> {
         self.verdict
     }
 
-    /// None without features.
     pub fn logit(&self) -> Option<i32> {
         self.logit
-    }
-
-    pub fn features(&self) -> &Features {
-        self.preprocessor.features()
     }
 
     pub fn verdict(&self) -> ArrayVerdict {
@@ -136,23 +120,14 @@ impl<'m, const N: usize> ArrayDetector<'m, N> {
     }
 
     fn judge(&mut self, logit: i32) {
-        let Judgement { logit_per_nat, on_permille, off_permille, on_frames, off_frames } =
-            self.model.judgement;
+        let Judgement { logit_per_nat, on_permille, off_permille } = self.model.judgement;
         let confidence_permille = logistic_permille(logit, logit_per_nat);
-        let slip = self.verdict.slip;
-        let contradicts =
-            if slip { confidence_permille < off_permille } else { confidence_permille >= on_permille };
-        self.contradicted = if contradicts { self.contradicted.saturating_add(1) } else { 0 };
-        let turns = contradicts && self.contradicted >= if slip { off_frames } else { on_frames };
-        if turns {
-            self.contradicted = 0;
-        }
+        let from = if self.verdict.slip { off_permille } else { on_permille };
         self.unjudged = 0;
-        self.verdict = ArrayVerdict { slip: slip != turns, confidence_permille, age_ms: 0 };
+        self.verdict = ArrayVerdict { slip: confidence_permille >= from, confidence_permille, age_ms: 0 };
     }
 
     fn stand_down(&mut self) {
-        self.contradicted = 0;
         self.unjudged = self.unjudged.saturating_add(1);
         let age_ms = u32::from(self.unjudged) * 1_000 / SLOW_HZ;
         let age_ms =
@@ -165,8 +140,7 @@ impl Detector for ShippedDetector {
     const ID: DetectorId = DetectorId::Mlp;
     type Config = ();
 
-    /// Lost frames do their share too: it needs no sample of theirs, and an old verdict would stand
-    /// meanwhile.
+    /// Lost frames do their share too, or an old verdict would stand.
     fn step(&mut self, _config: &(), sensed: &Sensed<'_>) -> Option<Said> {
         let share = sensed.slot.checked_sub(ARRAY_READ)?;
         self.work(share.into(), sensed.taxels).map(|verdict| Said::slip(verdict.slip))

@@ -29,25 +29,20 @@ pub use preprocess::{Features, Preprocessor, PreprocessorConfig};
 
 pub const ARRAY_READ: u8 = slot_of(Job::ArrayBegins);
 pub const MLP_DECIDES: u8 = slot_of(Job::MlpDecides);
-
 /// Two pads of five (Bamshad 2023, section 2.1).
 pub const ELEMENTS: usize = ARRAY_COUNT;
 pub const COVARIANCES: usize = ELEMENTS * (ELEMENTS + 1) / 2;
 /// 0 Hz to 40 Hz in steps of 2 Hz.
 pub const BINS: usize = SPECTRUM_WINDOW / 2 + 1;
-/// Inputs of the paper's network (Bamshad 2023, section 5.3).
 pub const PAPER_FEATURES: usize = COVARIANCES + BINS;
 pub const FEATURES: usize = PAPER_FEATURES + structure::STRUCTURES;
-/// Units of the network's hidden layers.
 pub const HIDDEN: [usize; 2] = [32, 16];
 /// Differences in the covariance (Bamshad 2023, section 4.2).
 pub const COVARIANCE_WINDOW: usize = 10;
 /// Samples in the spectrum (Bamshad 2023, section 4.3).
 pub const SPECTRUM_WINDOW: usize = 40;
-
 /// 14-bit samples; None for an element without a valid one.
 pub type Reading = [Option<u16>; ELEMENTS];
-
 pub type ShippedDetector = ArrayDetector<'static>;
 
 impl Default for ShippedDetector {

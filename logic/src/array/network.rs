@@ -1,13 +1,5 @@
-//! Two quantised hidden layers and a logit (Bamshad 2023, section 5.3), of one slow frame.
-//!
-//! ```text
-//! h1 = relu(W1 x + b1) >> shift
-//! h2 = relu(W2 h1 + b2) >> shift
-//! logit = w3 h2 + b3                         slip is more likely than not above 0
-//! ```
-//!
-//! Inputs and activations are `i16`, sums `i32`: [`Layer::new`] refuses a layer whose sums could overflow. A
-//! shift rounds down.
+//! Two quantised hidden layers and a logit (Bamshad 2023, section 5.3), of one slow frame. A layer gives
+//! `relu(W x + b) >> shift`, rounded down: `i16` inputs, `i32` sums that [`Layer::new`] keeps from overflow.
 
 use core::ops::Range;
 
@@ -16,7 +8,6 @@ use tenax_smlad::{Aligned, ROWS, dot, dot_rows};
 use super::{FEATURES, HIDDEN};
 
 pub const ACTIVATION_MAX: i16 = i16::MAX;
-/// Bound of an input's magnitude.
 const INPUT_SIZE: u32 = 1 << 15;
 
 /// Output whose sum could overflow `i32` with the largest inputs, or whose shift is above 31.
@@ -33,8 +24,7 @@ pub struct Layer<const I: usize, const O: usize> {
 }
 
 impl<const I: usize, const O: usize> Layer<I, O> {
-    /// Fails if `|bias| + 2^15 (sum of |weights|)` of a row is 2^31 or more, or `shift` is above 31. 100
-    /// weights of 8 bits always fit.
+    /// Fails if `|bias| + 2^15 (sum of |weights|)` of a row is 2^31 or more, or `shift` is above 31.
     pub const fn new(weights: [[i16; I]; O], bias: [i32; O], shift: u32) -> Result<Self, TooLarge> {
         let mut output = 0;
         while output < O {

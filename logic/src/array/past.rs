@@ -1,10 +1,7 @@
-//! Readings of the elements in the last half second, and their changes.
-
 use tenax_hal_shim::channel::{ARRAY, CHANNELS, sample_from_mv};
 
 use super::{ELEMENTS, Reading};
 
-/// Longest lag of a change, slow frames: half a second, for sensors that creep.
 pub const LAG_MAX: usize = 40;
 const FRAMES: usize = LAG_MAX + 1;
 
@@ -12,14 +9,12 @@ const FRAMES: usize = LAG_MAX + 1;
 pub struct Past {
     frames: [[u16; ELEMENTS]; FRAMES],
     newest: usize,
-    /// Consecutive frames with a reading, `FRAMES` at most.
     runs: [u8; ELEMENTS],
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Arrival {
     pub dead: usize,
-    /// Elements without a reading that had one in the slow frame before.
     pub gone: [bool; ELEMENTS],
     /// Change of the elements' sum, samples. An element without a reading keeps its last value.
     pub change: i32,

@@ -17,35 +17,23 @@ pub type Features = [i16; FEATURES];
 pub struct PreprocessorConfig {
     /// Lag of a difference, slow frames, clamped to 1..=[`LAG_MAX`]. Bamshad 2023, equation 1: 1.
     pub lag: u8,
-    /// samples^2.
     pub covariance_knee: u32,
-    /// samples^2.
     pub spectrum_knee: u32,
     /// samples^2 times the number of elements, for each slow frame of a window.
     pub structure_knee: u32,
-    /// Most elements without a reading with which there are features.
     pub dead_max: u8,
 }
 
 impl PreprocessorConfig {
-    /// For 200 mV/N with half a millivolt (2.5 samples) of noise: 12.5 squared in a difference, ten of which
-    /// make a variance; 6.2 in a reading, 400 of which make a bin's power.
     pub const DEFAULT: Self =
         Self { lag: 1, covariance_knee: 128, spectrum_knee: 2_048, structure_knee: 128, dead_max: 2 };
 }
 
-impl Default for PreprocessorConfig {
-    fn default() -> Self {
-        Self::DEFAULT
-    }
-}
-
-/// Covariance over `N` differences, spectrum over 40 sums and structure functions. Of an element that loses
-/// its reading, differences and covariances become 0, the sum keeps its last value, and the structure
-/// functions begin anew. Its return counts as no change: the missed force is added to the spectrum's whole
-/// window, and differences begin with its second reading.
+/// Covariance over ten differences, spectrum over 40 sums and structure functions. Of an element that loses
+/// its reading, differences and covariances become 0, and the sum keeps its last value. Its return counts as
+/// no change: the missed force is added to the spectrum's whole window.
 #[derive(Clone, Debug)]
-pub struct Preprocessor<const N: usize = COVARIANCE_WINDOW> {
+pub struct Preprocessor {
     config: PreprocessorConfig,
     covariance_knee: Knee,
     spectrum_knee: Knee,
@@ -53,9 +41,8 @@ pub struct Preprocessor<const N: usize = COVARIANCE_WINDOW> {
     lag: usize,
     past: Past,
     ready: bool,
-    /// Force of all elements above rest, samples.
     sum: i32,
-    covariance: SlidingCovariance<N>,
+    covariance: SlidingCovariance,
     spectrum: SlidingSpectrum<SPECTRUM_WINDOW>,
     structure: Structure,
     missing: usize,
@@ -68,7 +55,7 @@ impl Default for Preprocessor {
     }
 }
 
-impl<const N: usize> Preprocessor<N> {
+impl Preprocessor {
     pub fn new(config: PreprocessorConfig) -> Self {
         let lag = usize::from(config.lag).clamp(1, LAG_MAX);
         Self {
@@ -83,7 +70,7 @@ impl<const N: usize> Preprocessor<N> {
             covariance: SlidingCovariance::default(),
             spectrum: SlidingSpectrum::default(),
             structure: Structure::default(),
-            missing: (N + lag).max(SPECTRUM_WINDOW).max(structure::READY_AFTER),
+            missing: (COVARIANCE_WINDOW + lag).max(SPECTRUM_WINDOW).max(structure::READY_AFTER),
             features: [0; FEATURES],
         }
     }
@@ -117,7 +104,6 @@ impl<const N: usize> Preprocessor<N> {
         }
     }
 
-    /// Second third: the spectrum's features and the shorter lags.
     pub fn add_spectrum(&mut self) {
         self.structure.push_short(&self.past);
         if self.ready {
@@ -140,11 +126,7 @@ impl<const N: usize> Preprocessor<N> {
         &self.features
     }
 
-    pub fn covariance(&self) -> &SlidingCovariance<N> {
+    pub fn covariance(&self) -> &SlidingCovariance {
         &self.covariance
-    }
-
-    pub fn spectrum(&self) -> &SlidingSpectrum<SPECTRUM_WINDOW> {
-        &self.spectrum
     }
 }

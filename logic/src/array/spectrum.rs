@@ -1,6 +1,5 @@
-//! Sliding discrete Fourier transform of the elements' sum (Bamshad 2023, section 4.3). Each bin is the sum
-//! that defines it, in integers, so nothing drifts; a constant contributes to bin 0 only. The phase is
-//! counted from a fixed frame.
+//! Sliding discrete Fourier transform of the elements' sum (Bamshad 2023, section 4.3), in integers, so that
+//! nothing drifts. The phase is counted from a fixed frame.
 
 use super::{BINS, SPECTRUM_WINDOW};
 
@@ -83,8 +82,7 @@ impl<const M: usize> SlidingSpectrum<M> {
         }
     }
 
-    /// `|sum over n of s_n exp(-2 pi i k n / M)|^2`. Real and imaginary part are rounded down to the sums'
-    /// unit, the squares to 24 bits.
+    /// `|sum over n of s_n exp(-2 pi i k n / M)|^2`, each part rounded down to the sums' unit.
     #[inline]
     pub fn powers(&self) -> [f32; BINS] {
         self.bins.map(|[re, im]| {
@@ -101,7 +99,6 @@ mod tests {
     use core::f64::consts::PI;
     use std::vec::Vec;
 
-    /// The definition, in `f64`.
     fn powers_of(window: &[i32]) -> Vec<f64> {
         let m = window.len();
         let bin = |k: usize| {

@@ -1,10 +1,8 @@
 //! Structure functions of the elements' forces: the mean square of a change over a lag (Kolmogorov 1941),
 //! without the change that all elements share: `n sum(q^2) - (sum q)^2` of the `n` changes `q`.
 //!
-//! Sliding renews an element's contacts over a fixed distance, so the lag at which its structure function
-//! stops rising tells the speed, whatever gain, load and noise are. Six windows for each lag show the end of
-//! a slip. A fast slip is as white as noise, so the shortest lag's oldest window holds the quiet level
-//! instead. (Ours; not in the paper.)
+//! Sliding renews contacts over a fixed distance, so the lag at which the function stops rising tells the
+//! speed. The shortest lag's oldest window holds the quiet level. (Ours; not in the paper.)
 
 use core::ops::Range;
 
@@ -16,17 +14,14 @@ use super::past::{Changes, Past};
 pub const LAGS: [usize; 6] = [1, 2, 4, 8, 16, 32];
 const SHORT: usize = 4;
 pub const WINDOWS: usize = 6;
-/// Edges of the windows, slow frames ago.
 const EDGES: [usize; WINDOWS + 1] = [0, 1, 2, 4, 8, 16, 32];
 const FRAMES: usize = EDGES[WINDOWS];
 pub const STRUCTURES: usize = LAGS.len() * WINDOWS;
 /// The quiet level rises by 2^-8 of itself in each slow frame, and so doubles in 2.2 s.
 const QUIET_SHIFT: u32 = 8;
-/// Readings until all windows of the four shorter lags are full; the longer lags' windows hold 0 for the time
-/// before.
+/// Readings until all windows of the four shorter lags are full.
 pub const READY_AFTER: usize = FRAMES + LAGS[SHORT - 1];
 pub const FULL_AFTER: usize = FRAMES + LAGS[LAGS.len() - 1];
-
 /// Samples: 1 N of one element within 0.1 s. Sixteen sums of ten squares of it, times ten, fit in a `u32`.
 pub const CHANGE_MAX: i32 = 1 << 10;
 const _: () = assert!(
@@ -93,22 +88,19 @@ impl Structure {
         }
     }
 
-    /// Clears all but the quiet level: every sum contains the last, suspect readings of the element that was
-    /// lost.
+    /// Clears all but the quiet level: every sum contains the lost element's last, suspect readings.
     pub fn forget(&mut self) {
         self.pushed = 0;
         self.energies = [[0; FRAMES]; LAGS.len()];
         self.sums = [[0; WINDOWS]; LAGS.len()];
     }
 
-    /// A row for each lag, the newest window first: `n` times the sum of the squared changes about their
-    /// mean, samples^2; `n` is the number of elements whose change is known.
+    /// A row for each lag, the newest window first: `n` times the sum of the squared changes about their mean,
+    /// samples^2, for `n` known elements.
     pub fn sums(&self) -> &[[u32; WINDOWS]; LAGS.len()] {
         &self.sums
     }
 
-    /// Minimum of the sum over the shortest lag's oldest window, rising by 2^-8 of itself each slow frame;
-    /// `u32::MAX` until that window has been full.
     pub const fn quiet(&self) -> u32 {
         self.quiet
     }

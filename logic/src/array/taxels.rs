@@ -35,18 +35,6 @@ impl Taxels {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use tenax_hal_shim::words::Reason;
-
-    #[test]
-    fn a_dead_element_has_no_reading_and_is_told_once() {
-        let mut taxels = Taxels::default();
-        assert_eq!(taxels.read(2, 2_000), None);
-        assert_eq!(taxels.reading()[2], Some(2_000));
-        let changes: std::vec::Vec<_> = (0..80).filter_map(|_| taxels.read(2, 0)).collect();
-        assert_eq!(changes, [Change::Lost(Reason::Dead)]);
-        assert_eq!(taxels.reading(), &Reading::default());
-        assert_eq!(taxels.read(ARRAY_COUNT, 2_000), None);
-    }
 
     #[test]
     fn an_element_whose_frame_was_lost_has_no_reading_until_the_next() {

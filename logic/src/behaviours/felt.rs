@@ -1,5 +1,4 @@
-//! Input of a behaviour: slip, load, and the skin's cells. These are the camera's markers while it sees, else
-//! the taxels.
+//! Input of a behaviour: slip, load, and the skin's cells: the camera's markers, or the taxels without it.
 
 use tenax_hal_shim::behaviour::{CameraView, MARKERS, NORMAL_STEP_MN, SHEAR_STEP_MN, UNTRACKED};
 
@@ -8,26 +7,20 @@ use crate::grip::Grip;
 
 /// 200 mV/N (`docs/hardware.md`): a sample is about 1 mN.
 const TAXEL_SAMPLES_PER_N: i32 = 993;
-
 /// Scores of a cell's normal force, mN: noise, sufficient, medium, large (FingerVision 2017, section II-A).
 const SCORES: [(i32, u16); 3] = [(300, 5), (100, 3), (30, 1)];
-/// Change of a cell that counts, mN, or a quarter of its first reading.
 const CHANGE_MN: i32 = 60;
-
-/// Shear of all markers together that is a pull, mN: three times what noise of 10 mN a marker comes to. A
-/// light object's pull is too small for any single one.
+/// Shear of all markers together that is a pull, mN: three times its noise.
 const PULL_MN: i32 = 250;
 
 #[derive(Clone, Copy, Debug)]
 pub struct Felt<'a> {
-    /// None if it is too old.
     pub view: Option<&'a CameraView>,
     pub view_is_new: bool,
     pub cycle_is_over: bool,
     pub taxels: &'a Reading,
     pub grip: Grip,
     pub slips: bool,
-    /// Vibration of the films above half of S1's threshold.
     pub stirs: bool,
 }
 
@@ -49,20 +42,13 @@ impl Skin {
         felt.taxels.iter().any(Option::is_some).then_some(Self::Taxels(*felt.taxels))
     }
 
-    /// Sum of the cells' scores (section II-A). Markers start from no force; taxels from their first
-    /// readings, when the finger must be empty. None while the skin of the begin gives no readings.
     pub fn score(&self, felt: &Felt<'_>) -> Option<u16> {
         match (self, felt.view) {
             (Self::Markers { .. }, Some(view)) => {
                 Some((0..MARKERS).filter_map(|n| normal_mn(view, n)).map(|mn| score(mn.into())).sum())
             }
             (Self::Markers { .. }, None) => None,
-            (Self::Taxels(first), _) => {
-                let risen = |n: usize| Some(taxel_mn(i32::from(felt.taxels[n]?) - i32::from(first[n]?)));
-                let mut known = (0..ELEMENTS).filter_map(risen).peekable();
-                known.peek()?;
-                Some(known.map(score).sum())
-            }
+            (Self::Taxels(first), _) => sum_over(first, felt.taxels, score),
         }
     }
 
@@ -77,8 +63,7 @@ impl Skin {
         (0..MARKERS).filter_map(sheared).sum::<i32>().abs() > PULL_MN
     }
 
-    /// Cells whose force differs from the first (section II-C). None while the skin of the begin gives no
-    /// readings.
+    /// Cells whose force differs from the first (section II-C). None without readings of that skin.
     pub fn changed(&self, felt: &Felt<'_>) -> Option<u16> {
         match (self, felt.view) {
             (Self::Markers { normal_mn: normals, shear_mn: shears }, Some(view)) => {
@@ -90,15 +75,8 @@ impl Skin {
                 Some((0..MARKERS).filter_map(changed).sum())
             }
             (Self::Markers { .. }, None) => None,
-            (Self::Taxels(first), _) => {
-                let changed = |n: usize| {
-                    let (was, is) = (i32::from(first[n]?), i32::from(felt.taxels[n]?));
-                    Some(u16::from(differs(0, taxel_mn(is - was))))
-                };
-                let mut known = (0..ELEMENTS).filter_map(changed).peekable();
-                known.peek()?;
-                Some(known.sum::<u16>() * (MARKERS / ELEMENTS) as u16)
-            }
+            (Self::Taxels(first), _) => sum_over(first, felt.taxels, |mn| differs(0, mn).into())
+                .map(|changed| changed * (MARKERS / ELEMENTS) as u16),
         }
     }
 }
@@ -130,8 +108,12 @@ fn shear_mn(view: &CameraView, n: usize) -> i16 {
     view.shear.get(n).map_or(0, |&steps| i16::from(steps) * SHEAR_STEP_MN as i16)
 }
 
-const fn taxel_mn(samples: i32) -> i32 {
-    samples * 1_000 / TAXEL_SAMPLES_PER_N
+/// Sum of a measure of each taxel's change, mN; None if no taxel is known.
+fn sum_over(first: &Reading, now: &Reading, measure: impl Fn(i32) -> u16) -> Option<u16> {
+    let change = |(was, is): (&Option<u16>, &Option<u16>)| Some(i32::from((*is)?) - i32::from((*was)?));
+    let mut known = first.iter().zip(now).filter_map(change).peekable();
+    known.peek()?;
+    Some(known.map(|samples| measure(samples * 1_000 / TAXEL_SAMPLES_PER_N)).sum())
 }
 
 const fn differs(was_mn: i32, by_mn: i32) -> bool {

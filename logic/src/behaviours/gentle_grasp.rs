@@ -6,8 +6,8 @@ use tenax_hal_shim::motor::Duty;
 use super::{BehaviourConfig, Course, Felt, Movement, Skin, Wish};
 use crate::grip::Grip;
 
-/// Closes until half of the needed score, which noise does not reach, then by small movements with a wait
-/// after each: a fragile object gives way before a camera's next picture.
+/// Closes until half of the needed score, then by small movements with a wait after each, since a fragile
+/// object gives way before a camera's next picture.
 #[derive(Clone, Debug)]
 pub struct GentleGrasp {
     skin: Option<Skin>,

@@ -8,11 +8,9 @@ use super::{BehaviourConfig, Course, Felt, Skin, Wish};
 use crate::grip::Grip;
 use tenax_hal_shim::channel::frames;
 
-/// At full speed, some centimetres.
 const OPEN_FRAMES: u32 = frames(400);
 /// Least duration of a pull: three pictures, or four readings of the taxels. An impact is shorter.
 const STAYS_FRAMES: u32 = frames(50);
-/// Time after the begin in which changes do not count as a pull.
 const BEGINS_FRAMES: u32 = frames(200);
 
 #[derive(Clone, Debug)]

@@ -1,6 +1,5 @@
-//! Holding: closes a little whenever the object slips (FingerVision 2017, section II-B), for slip that only a
-//! camera sees or at a load below which the reflex rests. Motion without shear, or however far the fingers
-//! close, is a fault of the camera.
+//! Holding: closes a little whenever the object slips (FingerVision 2017, section II-B). Motion without shear
+//! is a fault of the camera.
 
 use super::felt::skin_mn;
 use super::{BehaviourConfig, Course, Felt, Movement, Wish};
@@ -8,13 +7,10 @@ use crate::grip::Grip;
 use tenax_hal_shim::channel::frames;
 use tenax_hal_shim::motor::Duty;
 
-/// Longest closing for one slip.
 const ANSWER_FRAMES_MAX: u32 = frames(500);
 const FASTER_FRAMES: u32 = frames(60);
 const FASTEST: u32 = 3;
-/// Time without slip that ends a slip.
 const STILL_FRAMES: u32 = frames(200);
-
 const STICKS: [[i32; 2]; 2] = [[1, 10], [1, 3]];
 const SLIDES: [i32; 2] = [1, 2];
 const SUMS_RATE: u32 = 2;
@@ -26,7 +22,6 @@ pub struct Hold {
     sums_q4: [i32; 2],
     may_slide: bool,
     slides: bool,
-    /// Frames of closing in this slip, times how much faster than usual.
     answered: u32,
     still: u32,
 }

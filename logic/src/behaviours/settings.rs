@@ -1,5 +1,3 @@
-//! Settings of the behaviours.
-
 use crate::setting::settings;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -1,6 +1,5 @@
 //! In-hand rotation: loosens until the object slips, tightens until it does not, until the angle is there
-//! (FingerVision 2017, section II-D). With `turn_lead_frames` the angle is extrapolated to the time at which
-//! a closing finger stops the object.
+//! (FingerVision 2017, section II-D), extrapolated by `turn_lead_frames`.
 
 use tenax_hal_shim::behaviour::Ending;
 use tenax_hal_shim::channel::{FRAME_HZ, frames};
@@ -12,15 +11,12 @@ use crate::latest;
 
 /// Time of tightening after which an object that still slips is falling: the reflex then answers.
 const FALLS_FRAMES: u32 = frames(300);
-/// Loosening stops at 1/3 of the first load: three times the needed force is a firm grasp, so it should have
-/// slipped before.
+/// Loosening stops at 1/3 of the first load, where a firm grasp should have slipped.
 const LEAST_PART: i32 = 3;
 const TURNS_PICTURES: usize = 4;
-/// Turn over these pictures that is one, tenths of a degree; the second value if the camera sees motion as
-/// well. The angle's own error is 3.
+/// Turn over these pictures, tenths of a degree; the second value if the camera sees motion as well.
 const TURNS_DDEG: [i32; 2] = [10, 3];
 const SLIDES_PICTURES: u32 = 6;
-/// Longest time without an angle from the camera.
 const UNSEEN_FRAMES: u32 = frames(200);
 const MARGIN_MOVEMENTS: i32 = 6;
 
@@ -47,7 +43,6 @@ pub struct Turn {
     since_view: u32,
     loosened_at_ddeg: i32,
     stride_ddeg: i32,
-    /// Travel opened since the begin, per mille of full duty times frames.
     loosened: i32,
     slipped_at: Option<i32>,
     tightens_for: u32,
@@ -158,8 +153,7 @@ impl Turn {
         self.slipped_at.is_some_and(|slipped_at| self.loosened + margin < slipped_at)
     }
 
-    /// Turned far enough: now, or by the time at which it can be stopped; or nearer than the next slip would
-    /// bring it.
+    /// Turned far enough: now, once it can be stopped, or nearer than the next slip would bring it.
     fn is_there(&self, config: &BehaviourConfig) -> bool {
         let lead = config.turn_lead_frames as i32;
         let left_ddeg = (self.target_ddeg - self.angle_ddeg) * self.sign;

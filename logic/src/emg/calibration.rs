@@ -9,30 +9,22 @@ use super::model::{EmgModel, Point, Refusal, octaves};
 use super::trust::TOP_UV;
 
 pub const PROMPT_FRAMES: u32 = 5 * FRAME_HZ;
-/// Start of a prompt that does not count, for the wearer's reaction.
 const REACTION_FRAMES: u32 = 7 * FRAME_HZ / 10;
-/// Share of readings without a number that a phase may have, per mille.
 const MISSING_PERMILLE: u32 = 50;
-/// Share of readings at the top of the range that a phase may have, per mille: a short overshoot.
 const TOP_PERMILLE: u32 = 100;
-/// Share of a phase in which the contraction must stand out, per mille.
 const HELD_PERMILLE: u32 = 600;
-/// Least rise of a contraction above rest, on one electrode.
 const STANDS_OUT: i32 = octaves(500);
-/// Standard deviation below which an envelope cannot be a muscle's, 1 %. The steadiest recorded contraction
-/// has 6 %.
+/// Standard deviation below which an envelope is no muscle's, 1 %.
 const STILL: i32 = octaves(15);
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Progress {
-    /// The prompt, and for how many more frames.
     Asks(Prompt, u32),
     Done(Result<EmgModel, Refusal>),
 }
 
 #[derive(Clone, Copy, Debug, Default)]
 struct Phase {
-    /// Counts of readings: all, without a number, at the top of the range, summed.
     readings: u32,
     missing: u32,
     top: u32,
@@ -120,8 +112,7 @@ impl Calibration {
         Self { began: frame, phases: [Phase::default(); 3], over: None }
     }
 
-    /// Envelopes above the live zero, uV, flexor first; None where a sensor gives no number. Once for each
-    /// pair of readings.
+    /// Envelopes above the live zero, uV, flexor first; None: no number. Once for each pair of readings.
     pub fn take(&mut self, frame: u32, uv: [Option<i32>; 2]) -> Progress {
         if let Some(result) = self.over {
             return Progress::Done(result);
@@ -147,7 +138,6 @@ impl Calibration {
         Progress::Asks(prompt, PROMPT_FRAMES - within)
     }
 
-    /// The next call concludes, with some thousand instructions: outside the tick.
     pub const fn is_over(&self, frame: u32) -> bool {
         frame.wrapping_sub(self.began) >= 3 * PROMPT_FRAMES
     }
@@ -188,7 +178,6 @@ impl Calibration {
 mod tests {
     use super::*;
 
-    /// Runs 15 s; `envelopes(phase, n)` gives the pair in mV.
     fn run(envelopes: impl Fn(u32, u32) -> [f64; 2]) -> Result<EmgModel, Refusal> {
         let mut calibration = Calibration::begin(u32::MAX - 100);
         for n in 0.. {
@@ -206,7 +195,6 @@ mod tests {
         unreachable!("it ends by itself")
     }
 
-    /// A fluctuation of about `part`, rms, different on both electrodes.
     fn lively(n: u32, k: u32, part: f64) -> f64 {
         1.0 + part * 1.41 * (f64::from(n) * (0.11 + 0.027 * f64::from(k))).sin()
     }

@@ -4,47 +4,32 @@
 /// second). Pairs are closing and opening.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fitted {
-    /// Slow frames over which shares and ratio are averaged.
     pub mean_frames: i32,
-    /// Share of the calibrated rise from which a wish begins.
     pub begins: [i32; 2],
-    /// Share below which a wish ends.
     pub ends: [i32; 2],
-    /// Least distance of a wish's end below its begin.
     pub hysteresis: i32,
-    /// Lowest share at which a wish ends.
     pub least_end: i32,
     /// Fall from the highest share that ends a wish: a muscle that relaxes slowly has let go.
     pub fall: i32,
-    /// Least fall of the level that ends a wish: a contraction fluctuates.
     pub least_fall: i32,
-    /// Time constant with which the highest share is forgotten.
     pub crest_frames: i32,
     /// Rise above the lowest share since, from which a wish begins again: tone that stays is no new wish.
     pub rise: i32,
-    /// Least level above rest from which a wish begins.
     pub least_rise: i32,
-    /// Least standard deviations of rest above rest from which a wish begins.
     pub least_spreads: i32,
     /// Place of the electrodes' ratio, closing at 0, opening at 1000: closing begins below, opening above.
     pub place_begins: i32,
     /// Place below which closing goes on, and above which opening does.
     pub place_stays: [i32; 2],
-    /// Duration after which rest, closing and opening count.
     pub dwell: [i32; 3],
-    /// Time constant with which the level of rest is followed.
     pub rest_frames: i32,
-    /// Time after other activity in which no opening begins, and in which only a strong one does: the
-    /// opposite muscle often contracts weakly after a contraction.
+    /// Time after other activity in which no opening begins, and in which only a strong one does.
     pub after_frames: [i32; 2],
-    /// Duration after which closing counts soon after opening.
     pub after_dwell: i32,
     /// Level above the calibrated opening from which nothing is a relaxing muscle.
     pub firmer: i32,
-    /// Share of the other site, above what calibration found beside the contraction, from which both
-    /// contract.
+    /// Share of the other site, above the calibrated one, from which both contract.
     pub both: i32,
-    /// Share of either site that is activity.
     pub busy: i32,
 }
 

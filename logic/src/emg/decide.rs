@@ -1,6 +1,5 @@
-//! The wearer's wish from both envelopes: rest, close or open. The *share* of a site's calibrated rise says
-//! whether, the *place* of the electrodes' ratio between calibrated closing and opening says which way; both
-//! averaged over 0.13 s, with hysteresis and dwell. Hum and tone that are added to rest are subtracted.
+//! The wearer's wish from both envelopes. The *share* of a site's calibrated rise says whether, the *place* of
+//! the electrodes' ratio between calibrated closing and opening which way. Constant hum and tone are subtracted.
 
 use super::constants::Fitted;
 use super::fitted::FITTED;
@@ -13,17 +12,12 @@ pub const OVER_UV: i32 = 2_950_000;
 const STRONG: i32 = 1_000;
 /// Share of closing that closes even without a reading of the opening site, per mille.
 const ALONE: i32 = 900;
-/// Slow frames without a wish after which rest is followed.
 const CALM_FRAMES: u16 = 40;
-/// Time constant with which constant hum is subtracted, slow frames: 0.3 s.
 const HUM_FRAMES: i32 = 21;
-/// Limit of the subtracted hum or tone, uV.
 const MOST_DRIFT_UV: i32 = 1_500_000;
-/// Shares at which a muscle becomes active and ceases to be, per mille; [`ACTIVE_UV`] limits both levels.
 const ACTIVE: [i32; 2] = [350, 250];
 const ACTIVE_UV: [i32; 2] = [159_000, 112_000];
-/// Least rise of the other electrode that can prove a contraction, Q10 octaves, and the needed rise in
-/// standard deviations of its rest.
+/// Least rise of the other electrode that proves a contraction, Q10 octaves, and in deviations of its rest.
 const HEARS_AT_ALL: i32 = 300;
 const HEARS_SPREADS: i32 = 1;
 /// Without calibration: envelopes from which closing and opening begin, uV; least distance of the other
@@ -31,7 +25,6 @@ const HEARS_SPREADS: i32 = 1;
 const DEFAULT_BEGINS_UV: [i32; 2] = [600_000, 1_500_000];
 const DEFAULT_OVER: [i32; 2] = [1_322, 2_900];
 const DEFAULT_FRAMES: i32 = 24;
-/// Without calibration: least rise of the other electrode, Q10 octaves.
 const DEFAULT_HEARS: i32 = 256;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -46,27 +39,22 @@ pub enum Wish {
 pub struct Electrode {
     /// Mean envelope above the live zero, uV, [`OVER_UV`] at most; None: no valid reading.
     pub uv: Option<i32>,
-    /// A reading was above [`OVER_UV`].
     pub over: bool,
     /// Blocks nothing, and starts only a strong wish.
     pub doubted: bool,
     pub still: bool,
-    /// Constant for so long that its level counts as hum.
     pub hums: bool,
 }
 
-/// Levels by site: 0 closes, 1 opens.
 #[derive(Clone, Copy, Debug)]
 struct Sites {
     electrode: [usize; 2],
     rest: [i32; 2],
     rest_uv: [i32; 2],
-    /// Rise of each site in its own contraction.
     span: [i32; 2],
     begins: [i32; 2],
     ends: [i32; 2],
     fall: [i32; 2],
-    /// Share of the other site from which both contract, which is no wish.
     both: [i32; 2],
     /// Least rise of the other electrode with each wish; None if its signal is too small.
     hears: [Option<i32>; 2],
@@ -162,8 +150,7 @@ impl Decide {
         self.sites.as_ref().map_or(site, |sites| sites.electrode[site]) & 1
     }
 
-    /// Rest level of the electrode beside the [`mover`](Self::mover) and its least rise, Q10 octaves. None if
-    /// the wearer's contractions hardly raise it.
+    /// Rest level and least rise of the other electrode, Q10 octaves; None if contractions hardly raise it.
     pub fn hears(&self) -> Option<[i32; 2]> {
         let site = self.machine.site();
         match &self.sites {

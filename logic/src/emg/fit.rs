@@ -1,6 +1,5 @@
-//! Whether contractions still fit the calibration, over twelve of them. It only reports. A contraction's
-//! *turn* is far below zero with electrodes in place, as far above with exchanged plugs, and about zero if
-//! both electrodes are driven alike; it is *answered* if the hand took it for a wish.
+//! Whether contractions still fit the calibration, over twelve of them; it only reports. A *turn* is far below
+//! zero with electrodes in place, far above with exchanged plugs, and about zero if both are driven alike.
 
 use tenax_hal_shim::words::Fit;
 
@@ -8,11 +7,9 @@ use super::Verdict;
 use super::decide::Wish;
 use super::model::{EmgModel, Point};
 
-/// Slow frames: of rest that ends a contraction, and of the shortest and the longest contraction.
 const OVER_FRAMES: u8 = 8;
 const LEAST_FRAMES: u32 = 40;
 const MOST_FRAMES: u16 = 4_800;
-/// Part of a contraction's slow frames that must be a wish, or it is unanswered.
 const ANSWERED: [u32; 2] = [2, 5];
 pub const CONTRACTIONS: u8 = 12;
 /// Unanswered contractions, or turns less than an eighth of the calibrated ones', that show moved electrodes.
@@ -20,14 +17,12 @@ const UNANSWERED: u8 = 3;
 const MOVED: [i32; 2] = [1, 8];
 /// Turns the other way of more than a third of the calibrated ones' show exchanged electrodes.
 const EXCHANGED: [i32; 2] = [1, 3];
-/// Limit of one contraction's turn, and the least mean of calibrated turns that tells anything, Q10 octaves:
-/// two muscles that mirror each other turn little.
+/// Limit of one contraction's turn, and least mean of calibrated turns that tells anything, Q10 octaves.
 const MOST: i32 = 2_048;
 const LEAST: i32 = 512;
 
 #[derive(Clone, Debug, Default)]
 pub struct Watch {
-    /// Present contraction: sums of levels, slow frames, and those of them with a wish.
     sums: Point,
     frames: u16,
     wished: u16,

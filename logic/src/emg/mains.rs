@@ -1,12 +1,9 @@
 //! Mains in an envelope: a spectrum of 0.8 s, outside the tick. At 80 readings a second the lines fold: 50 Hz
-//! to 30, 100 to 20, 200 to 40; 60 Hz to 20, 120 to 40, 180 to 20. A muscle's envelope lies below 10 Hz, so a
-//! line at 20, 30 or 40 Hz is mains; 150 Hz (10) is left out. A myosensor's low-pass leaves little ripple:
-//! the constant level finds the fault ([`trust`](super::trust)), the ripple names it.
+//! to 30, 100 to 20, 200 to 40; 60 Hz to 20, 120 to 40, 180 to 20. A muscle's envelope lies below 10 Hz.
 
 /// Readings in a window, one a slow frame: 0.8 s, bins of 1.25 Hz.
 pub const WINDOW: usize = 64;
 pub const UNIT_UV: i32 = 128;
-/// Bins of the folded mains lines and their neighbours.
 const LINES: [bool; WINDOW / 2] = {
     let mut lines = [false; WINDOW / 2];
     let mut n = 0;
@@ -18,7 +15,6 @@ const LINES: [bool; WINDOW / 2] = {
     lines[31] = true;
     lines
 };
-/// First bin (5 Hz) of the muscle's noise; lower bins hold the contractions.
 const FIRST_BIN: usize = 4;
 /// Least amplitude of a mains line, uV: four times what the noise of a pin makes.
 const LEAST_LINE_UV: u32 = 400;

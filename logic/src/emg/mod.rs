@@ -1,7 +1,5 @@
-//! EMG of the wearer's two muscles. [`level`] takes logarithms of the envelopes, [`calibration`] learns rest,
-//! closing and opening ([`model`]), [`decide`] finds the wish, [`proof`] and [`trust`] whether it is a
-//! muscle's, [`fit`] whether the calibration still fits. [`Emg`] is the whole; `docs/emg.md` has the
-//! measurements.
+//! EMG of the wearer's two muscles: [`Emg`] finds the wish ([`decide`]), whether it is a muscle's ([`proof`],
+//! [`trust`]), and whether the calibration ([`calibration`], [`model`]) still fits ([`fit`]).
 
 pub mod calibration;
 pub mod constants;
@@ -9,15 +7,13 @@ pub mod decide;
 pub mod fit;
 pub mod fitted;
 pub mod level;
-pub mod log2;
 pub mod mains;
 pub mod model;
 pub mod proof;
 pub mod settings;
-pub mod trust;
-
 #[cfg(test)]
 mod tests;
+pub mod trust;
 
 use tenax_hal_shim::front_end::MYO_REST_MV;
 
@@ -34,13 +30,11 @@ pub const fn uv_of_sample(sample: u16) -> i32 {
     ((sample as i32 * 12_894) >> 6) - MYO_REST_MV as i32 * 1_000
 }
 
-/// Pairs of readings in a slow frame.
 const PAIRS: u8 = 3;
 
 #[derive(Clone, Debug, Default)]
 struct Channel {
     trust: Trust,
-    /// Envelopes at which the muscle becomes active and ceases to be, uV.
     active_uv: [i32; 2],
     sum_uv: i32,
     count: i32,
@@ -93,7 +87,6 @@ impl Channel {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Verdict {
     pub wish: Wish,
-    /// 0 to 1000 per mille: for the speed. 0 at rest.
     pub strength_permille: u16,
     /// An unproven contraction moves the hand slowly and little.
     pub proven: bool,
@@ -123,7 +116,6 @@ impl Default for Emg {
 }
 
 impl Emg {
-    /// None: only very clear contractions move the hand.
     pub fn new(model: Option<&EmgModel>) -> Self {
         Self::of(Decide::new(model))
     }
@@ -156,7 +148,7 @@ impl Emg {
     }
 
     /// One channel (0 flexor, others extensor), uV above the live zero; None counts as a gap. The extensor's
-    /// third reading completes a slow frame; activity and doubt are in the verdict at once.
+    /// third reading completes a slow frame.
     pub fn read(&mut self, channel: usize, uv: Option<i32>) {
         let n = channel.min(1);
         let channel = &mut self.channels[n];
@@ -238,13 +230,12 @@ impl Emg {
         }
     }
 
-    /// 64 readings, one a slow frame, the oldest first, 128 uV a unit: input of [`mains::mains_of`] outside
-    /// the tick. None until full.
+    /// 64 readings, one a slow frame, the oldest first, 128 uV a unit; None until full.
     pub fn window(&self, channel: usize) -> Option<&[i16; WINDOW]> {
         self.channels[channel.min(1)].trust.window()
     }
 
-    pub const fn hear(&mut self, channel: usize, mains: Mains) {
+    pub fn hear(&mut self, channel: usize, mains: Mains) {
         let channel = if channel == 0 { 0 } else { 1 };
         self.channels[channel].trust.hear(mains);
     }

@@ -1,28 +1,24 @@
-//! The calibration of a wearer: levels of rest and of two chosen contractions. Neither electrode is a muscle
-//! of its own, so the electrode that is relatively stronger in a contraction is its site.
+//! Calibration of a wearer: levels of rest and of two chosen contractions. The electrode that is relatively
+//! stronger in a contraction is its site.
 
 pub use tenax_hal_shim::words::CalibrationRefusal as Refusal;
 
 use super::level::{FLOOR_LEVEL, TOP_LEVEL, level_of};
 
 pub const MODEL_WORDS: usize = 10;
-/// Changes whenever a word's meaning does.
 const VERSION: i32 = 2;
 
 pub(super) const fn octaves(permille: i32) -> i32 {
     permille * 1_024 / 1_000
 }
 
-/// Least rise of a contraction's site above rest: a factor of 2.3. A rest that drifts by half within an hour
-/// stays below the threshold.
+/// Least rise of a contraction's site above rest: a factor of 2.3.
 const LEAST_RISE: i32 = octaves(1_200);
-/// Least difference of the electrodes' ratio between the two contractions: a factor of 2.3.
 const LEAST_TURN: i32 = octaves(1_200);
 /// Least distance of two of the three states, in thousandths of their common standard deviation.
 pub const LEAST_SEPARATION_PERMILLE: i32 = 2_200;
 /// Largest standard deviation of rest: 41 %.
 const NOISIEST_REST: i32 = octaves(500);
-
 /// Levels of both electrodes, [`level_of`] of uV, flexor first.
 pub type Point = [i32; 2];
 
@@ -36,7 +32,6 @@ pub struct EmgModel {
 }
 
 impl EmgModel {
-    /// Fails with the reason why no calibration could have given these.
     pub const fn new(
         rest: Point,
         close: Point,
@@ -99,7 +94,6 @@ impl EmgModel {
         ((self.open[1] - self.open[0]) - (self.close[1] - self.close[0])).abs()
     }
 
-    /// Electrode that is relatively stronger in closing: 0 flexor, 1 extensor.
     pub const fn closing_site(&self) -> usize {
         let [close, open] = [self.close[1] - self.close[0], self.open[1] - self.open[0]];
         if open >= close { 0 } else { 1 }
@@ -125,8 +119,7 @@ impl EmgModel {
         self.spread
     }
 
-    /// Smallest distance of two states, in thousandths of their common standard deviation. From 2200 a
-    /// calibration is taken; nearly all recordings have 4000 and more.
+    /// Smallest distance of two states, in thousandths of their common standard deviation.
     pub const fn separation_permille(&self) -> i32 {
         self.separation_permille
     }

@@ -1,6 +1,5 @@
-//! Whether a wish is proven to be a muscle's. A fault lies under one electrode, and jumps or stands still. So
-//! an opening is proven when the other electrode has risen lately, out of proportion, *and* its own envelope
-//! rose by degrees or has turned.
+//! Proof that a wish is a muscle's. A fault lies under one electrode, and jumps or stands still: an opening is
+//! proven if the other electrode has risen out of proportion *and* its own envelope rose by degrees or turned.
 
 use super::decide::{OVER_UV, Wish};
 use super::level::{TOP_LEVEL, level_of};
@@ -11,8 +10,7 @@ use super::trust::{TOP_UV, Trust};
 const BLOCK_FRAMES: u8 = 8;
 const BLOCKS: usize = 9;
 const BEFORE: usize = 5;
-/// Least rise of the other electrode, Q10 octaves: 9 %. At rest 0.5 to 3 % of such times have one, of real
-/// openings 84 to 100 %.
+/// Least rise of the other electrode, Q10 octaves: 9 %.
 const LEAST_HEARD: i32 = 123;
 /// Slow frames from the begin of a wish in which the other electrode has to rise: 1.5 s.
 const HEARD_FRAMES: u16 = 120;
@@ -23,11 +21,8 @@ const HEARD_FOR: u8 = 2;
 const MOST_IN_BLOCK: i32 = 650;
 const PART_OF_BLOCK: i32 = 100;
 const BLOCKS_OF_RISE: usize = 3;
-/// Least height of a gradual rise, Q10 octaves.
 const LEAST_RISE: i32 = 512;
-/// Part of its fastest step to which a gradual rise has slowed down, per mille.
 const SLOWER: i32 = 600;
-/// Difference of two rises' parts of the whole, as a part of their sum (8 %), that is out of proportion.
 const APART_PART: i32 = 12;
 /// Slow frames within which the same wish goes on without new proof: 0.1 s.
 const GOES_ON_FRAMES: u16 = 8;
@@ -36,9 +31,7 @@ const OVER_FRAMES: u16 = 40;
 /// Each unproven opening makes the next harder to believe, three times at most; 10 s of rest take one back.
 const MOST_WARY: u8 = 3;
 const WARY_FRAMES: u16 = 800;
-
-/// Rise and fall of a swing, Q10 octaves; swings that the other electrode does not hear, within 3 s (240 slow
-/// frames), of a loose electrode or one that hums with the arm's swing.
+/// Rise and fall of a swing, Q10 octaves; swings that the other electrode does not hear, within 3 s.
 const SWING: i32 = 1_024;
 const LONE_SWINGS: u8 = 2;
 const SWING_FRAMES: u16 = 240;
@@ -48,7 +41,6 @@ struct Swings {
     low: i32,
     high: Option<i32>,
     was_active: bool,
-    /// The other electrode's level at `low`, and its highest level since.
     other: [i32; 2],
     lone: u8,
     since: u16,
@@ -110,9 +102,8 @@ pub struct Proof {
 }
 
 impl Proof {
-    /// Levels of a slow frame, None without a number, and their wish. `hears`: rest of the other electrode
-    /// and its least rise, Q10 octaves; None if it hardly rises, so that only turning twice proves. `raised`:
-    /// the mover's electrode is active.
+    /// Levels of a slow frame, None without a number. `hears`: rest of the other electrode and its least rise, Q10
+    /// octaves; None if it hardly rises, so that only turning twice proves. `raised`: the mover is active.
     #[inline(never)]
     pub fn take(
         &mut self,
@@ -157,7 +148,6 @@ impl Proof {
         self.proven
     }
 
-    /// The electrodes that swing unheard by the other.
     pub fn lone(&mut self, levels: [Option<i32>; 2], active: [bool; 2]) -> [bool; 2] {
         let [Some(flexor), Some(extensor)] = levels else { return [false; 2] };
         let [own, other] = &mut self.swings;
@@ -211,19 +201,16 @@ impl Proof {
         self.blocks.map(|[.., now]| now.into())
     }
 
-    /// Highest level of 0.4 to 0.8 s ago.
     fn before(&self, n: usize) -> i32 {
         self.blocks[n & 1].iter().take(BEFORE).copied().max().map_or(0, i32::from)
     }
 
-    /// Rise above the lower of [`before`](Self::before) and the level at the wish's begin, or above rest if
-    /// that is higher, Q10 octaves.
+    /// Rise above the lower level of before and at the wish's begin, or above rest if higher, Q10 octaves.
     fn rise(&self, n: usize, level: Option<i32>, rest: i32) -> i32 {
         level.map_or(0, |level| level - self.before(n).min(self.before[n & 1]).max(rest))
     }
 
-    /// Both rise, out of proportion: a signal that reaches both electrodes at once rises in proportion, or
-    /// jumps.
+    /// Both rise, out of proportion: a signal that reaches both at once rises in proportion, or jumps.
     #[inline(never)]
     fn rise_apart(&self) -> bool {
         let low = self.blocks.map(least);
@@ -242,8 +229,6 @@ impl Proof {
         apart
     }
 
-    /// Rise over several blocks that slows down; creep does not. At the top of the range any signal slows
-    /// down, which does not count.
     fn is_gradual(&self, n: usize) -> bool {
         let blocks = self.blocks[n & 1].map(i32::from);
         let [.., last_but_one, last, now] = blocks;

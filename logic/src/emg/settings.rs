@@ -1,11 +1,8 @@
-//! What can be chosen about the myoelectric gate.
-
 use crate::setting::settings;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct GateConfig {
     pub on_mv: u16,
-    /// Hold time of activity: the pause between two contractions is no invitation to the reflex.
     pub hold_frames: u32,
     pub slowest_permille: u16,
 }

@@ -2,7 +2,6 @@ use super::*;
 use std::f64::consts::TAU;
 use std::vec::Vec;
 
-/// Readings of a pair a second.
 const HZ: f64 = 240.0;
 
 fn wearer() -> Emg {
@@ -10,14 +9,12 @@ fn wearer() -> Emg {
     Emg::new(Some(&model))
 }
 
-/// Verdicts under envelopes of so many seconds, mV.
 fn run(emg: &mut Emg, seconds: f64, of: impl Fn(f64) -> [f64; 2]) -> Vec<Verdict> {
     (0..(seconds * HZ) as u32)
         .map(|n| emg.take(of(f64::from(n) / HZ).map(|mv| Some((mv * 1e3) as i32))))
         .collect()
 }
 
-/// A muscle at about this level, mV.
 fn alive(mv: f64, t: f64) -> f64 {
     mv * (1.0 + 0.12 * (TAU * 2.7 * t).sin() + 0.1 * (TAU * 5.3 * t + 1.0).sin())
 }

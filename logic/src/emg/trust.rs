@@ -1,6 +1,7 @@
 //! Quality of a myosensor's envelope, and the turns that only a muscle makes. Each fault has a duration that
-//! no sound recording reaches (`docs/emg.md`). A doubted electrode loses its weight; it vetoes nothing of the
-//! other one.
+//! no sound recording reaches (`docs/emg.md`). A doubted electrode vetoes nothing of the other one.
+
+use heapless::Vec;
 
 use super::mains::{Mains, UNIT_UV, WINDOW};
 
@@ -10,8 +11,7 @@ pub const TOP_UV: i32 = 2_850_000;
 const BRIDGED_READINGS: u8 = 12;
 /// Constant: within 1 % and this, uV.
 const STILL_UV: i32 = 1_500;
-/// Slow frames of a constant envelope that is doubted: 1 s. Sound recordings have 0.77 s in 45 minutes at
-/// most.
+/// Slow frames of a constant envelope that is doubted: 1 s. Sound recordings have 0.77 s at most.
 const FLAT_FRAMES: u16 = 80;
 /// Hum varies by less than 1/16 of its level.
 const HUM_PART: i32 = 16;
@@ -26,8 +26,7 @@ const BACK_FRAMES: u16 = 80;
 /// Slow frames between the points of a curve, 50 ms, and before its first one counts.
 const LAG: usize = 4;
 const FIRST_PROOF_FRAMES: u16 = 20;
-/// Least curvature of a proof, as a part of the level, and slow frames between two proofs: 0.15 s, more than
-/// one jump takes.
+/// Least curvature of a proof, as a part of the level, and slow frames between two proofs: 0.15 s.
 const PROOF_PART: i32 = 12;
 const PROOF_APART: u16 = 12;
 /// Slow frames without a proof after which a contraction has to prove itself again: 1 s.
@@ -68,11 +67,10 @@ impl core::fmt::Display for Quality {
     }
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Trust {
     quality: Quality,
     good: u16,
-    /// Readings in a row without a number, and the last one with it, uV.
     missing: u8,
     last_uv: i32,
     past_uv: [i32; 2 * LAG],
@@ -89,37 +87,9 @@ pub struct Trust {
     /// Proofs of this contraction, two at most, and slow frames since the last.
     proofs: u8,
     since_proof: u16,
-    window: [i16; WINDOW],
-    filled: u8,
+    window: Vec<i16, WINDOW>,
     kept: bool,
     mains: bool,
-}
-
-impl Default for Trust {
-    fn default() -> Self {
-        Self {
-            quality: Quality::Good,
-            good: 0,
-            missing: 0,
-            last_uv: 0,
-            past_uv: [0; 2 * LAG],
-            place: 0,
-            anchor_uv: 0,
-            flat: 0,
-            hum_uv: 0,
-            active_for: 0,
-            foot_uv: 0,
-            crest_uv: 0,
-            climbing: 0,
-            at_top: 0,
-            proofs: 0,
-            since_proof: 0,
-            window: [0; WINDOW],
-            filled: 0,
-            kept: false,
-            mains: false,
-        }
-    }
 }
 
 impl Trust {
@@ -134,10 +104,8 @@ impl Trust {
             return self.last_uv();
         };
         (self.missing, self.last_uv) = (0, uv);
-        if !self.kept && usize::from(self.filled) < WINDOW {
-            self.window[usize::from(self.filled)] = (uv / UNIT_UV).clamp(-32_768, 32_767) as i16;
-            self.filled += 1;
-            self.kept = true;
+        if !self.kept {
+            self.kept = self.window.push((uv / UNIT_UV).clamp(-32_768, 32_767) as i16).is_ok();
         }
         Some(uv)
     }
@@ -146,7 +114,6 @@ impl Trust {
         (self.missing <= BRIDGED_READINGS).then_some(self.last_uv)
     }
 
-    /// Mean of a slow frame, uV; `active_uv`: envelope from which the muscle is active.
     pub fn judge(&mut self, active_uv: i32, uv: i32) {
         self.kept = false;
         let place = usize::from(self.place) % (2 * LAG);
@@ -226,7 +193,6 @@ impl Trust {
         }
     }
 
-    /// Fallen back by 3 % in this frame.
     fn climb(&mut self, uv: i32) -> bool {
         let turned = self.active_for > 0 && uv < self.crest_uv - self.crest_uv / 32 - STILL_UV;
         if self.active_for == 0 || uv >= TOP_UV || turned {
@@ -249,7 +215,6 @@ impl Trust {
         matches!(self.quality, Quality::Good)
     }
 
-    /// Constant for 0.2 s.
     pub const fn is_still(&self) -> bool {
         self.flat >= FLAT_FRAMES / 5
     }
@@ -284,12 +249,12 @@ impl Trust {
     }
 
     pub fn window(&self) -> Option<&[i16; WINDOW]> {
-        (usize::from(self.filled) == WINDOW).then_some(&self.window)
+        self.window.as_slice().try_into().ok()
     }
 
-    pub const fn hear(&mut self, mains: Mains) {
+    pub fn hear(&mut self, mains: Mains) {
         self.mains = mains.is_heard();
-        self.filled = 0;
+        self.window.clear();
     }
 }
 

@@ -1,5 +1,5 @@
-//! Limit of the force that warnings add without confirmation: half of the load. Shear shows sooner whether
-//! the object slides: a sliding object carries Ft = mu Fn, a held one its weight.
+//! Limit of the force that warnings add without confirmation. A sliding object carries Ft = mu Fn, a held one
+//! its weight.
 
 use tenax_hal_shim::wire::Forces;
 
@@ -7,7 +7,6 @@ use tenax_hal_shim::wire::Forces;
 const GROWTH_PART: i32 = 2;
 /// Growth of the load from which shear shows a held object: 1/8 of it, several times the hysteresis.
 const SHOWS_PART: i32 = 8;
-/// Ft of a held object grows by less than 1/4 of what it would if it slid.
 const HELD_PART: i64 = 4;
 
 #[derive(Clone, Copy, Debug, Default)]
@@ -16,7 +15,6 @@ pub struct Asked(Option<At>);
 #[derive(Clone, Copy, Debug)]
 struct At {
     load_mn: i32,
-    /// None where no ratio was known.
     ft_mn: Option<i32>,
 }
 
@@ -42,8 +40,7 @@ impl Asked {
         self.0.is_some_and(|began| forces.load_mn > began.load_mn + began.load_mn / GROWTH_PART + on_top_mn)
     }
 
-    /// True if the load has grown by more than 1/8 and `on_top_mn`, and the shear by less than a quarter of a
-    /// sliding object's.
+    /// True if the load has grown by more than 1/8 and `on_top_mn`, and the shear by less than 1/4 of sliding.
     pub fn is_held(&self, forces: &Forces, on_top_mn: i32) -> bool {
         let (Some(began), now) = (self.0, at(forces)) else { return false };
         let (Some(began_mn), Some(now_mn)) = (began.ft_mn, now.ft_mn) else { return false };

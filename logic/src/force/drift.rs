@@ -1,28 +1,22 @@
 //! Drift of the quadrants (cells A to D, clockwise) in a grasp. The element on them is rigid: A + C = B + D.
-//! One cell that drifts breaks this, and is computed from the other three. A slow fall of all with the motor
-//! at rest, beyond what skin yields, is drift of all. If two cells have sunk to nothing, the sensor gives no
-//! force.
+//! One cell that breaks this is computed from the other three. A slow fall of all with the motor at rest,
+//! beyond what skin yields, is drift of all.
 
 use tenax_hal_shim::channel::FSR_COUNT;
 
 use super::sensor::CARRIES_MN;
 
 const SIGNS: [i32; FSR_COUNT] = [1, -1, 1, -1];
-/// Tolerated contradiction of the cells, mN, and as a part of the load: hysteresis and gains (Interlink's
-/// guide) leave so much.
+/// Tolerated contradiction of the cells, mN, and as a part of the load (Interlink's guide).
 const TOLERATED_MN: i32 = 60;
 const TOLERATED_PART: i32 = 20;
-/// Readings of contradiction after which a cell is blamed: half a second.
 const CONTRADICTS_FOR: u8 = 40;
-/// Readings of a new grasp over which the cells' gains are learned: half a second.
 const LEARN: u8 = 40;
 const LEARN_SHIFT: u32 = 3;
 const GAIN_Q: u32 = 12;
-/// A cell's change is measured from its average over `2^ANCHOR_SHIFT` readings, 3 s, with as many fraction
-/// bits. Votes decay over `2^VOTES_SHIFT` readings.
+/// Averages of a cell over `2^ANCHOR_SHIFT` readings, 3 s; decay of votes over `2^VOTES_SHIFT` readings.
 const ANCHOR_SHIFT: u32 = 8;
 const VOTES_SHIFT: u32 = 9;
-/// Ratio of votes from which another cell is blamed instead.
 const CLEARLY: i32 = 2;
 /// Votes that exceed noise. A vote is 2^VOTE_SHIFT mN^2.
 const HEARD: i32 = 200;
@@ -30,14 +24,11 @@ const VOTE_SHIFT: u32 = 8;
 /// Drift that is followed in a reading, mN: 0.24 N/s of one cell, 0.5 N/s of all.
 const CELL_FOLLOWS_MN: i32 = 3;
 const ALL_FOLLOWS_MN: i32 = 6;
-/// Readings after the motor's last drive before a load stands still: 0.5 s.
 const STILL_FOR: u32 = 40;
-/// Part of a load that skin may yield by itself.
 const YIELDS_PART: i32 = 5;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cells {
-    /// Forces of A to D without drift, mN.
     Known([i32; FSR_COUNT]),
     /// Too few cells carry a force: it cannot be told from drift.
     Sunk,
@@ -53,8 +44,7 @@ pub struct Drift {
     /// Readings since the grasp began, and A - B + C - D as a part of the load, caused by unequal gains.
     learned: u8,
     gain: i32,
-    /// Averages of 3 s, mN with [`ANCHOR_SHIFT`] fraction bits, and the part of the contradiction that each
-    /// cell explains.
+    /// Averages of 3 s, mN Q8, and the part of the contradiction that each cell explains.
     anchors: [i32; FSR_COUNT],
     votes: [i32; FSR_COUNT],
     /// Drift of all cells together, mN, and the load at which they were constant.
@@ -84,7 +74,6 @@ impl Drift {
         Cells::Known(cells)
     }
 
-    /// `still`: readings since the motor was driven. Call it once after each reading, outside of the tick.
     pub fn think(&mut self, read_mn: [i32; FSR_COUNT], loaded_mn: i32, still: u32) {
         let load_mn: i32 = self.corrected(read_mn).iter().sum();
         if load_mn < loaded_mn {
@@ -104,7 +93,6 @@ impl Drift {
         cells.map(|mn| (mn + self.sunk_mn / FSR_COUNT as i32).max(0))
     }
 
-    /// If only the blamed cell carries a force, nothing is held: its reading is drift.
     fn let_go(&mut self, read_mn: [i32; FSR_COUNT], opened: bool) {
         let carries = |n: usize| read_mn[n] >= CARRIES_MN;
         if let Some(blamed) = self.blamed()
@@ -193,24 +181,18 @@ mod tests {
     use super::*;
     use std::vec::Vec;
 
-    #[derive(Clone, Copy)]
-    struct Motor {
-        still: u32,
-        opened: bool,
-    }
-
     const LOADED_MN: i32 = 600;
-    const STILL: Motor = Motor { still: 1_000, opened: false };
-    const MOVES: Motor = Motor { still: 0, opened: false };
+    /// Readings since the motor was driven.
+    const STILL: u32 = 1_000;
+    const MOVES: u32 = 0;
 
-    /// Cells under a load and a shear along both axes, mN.
     fn cells(load: f64, x: f64, y: f64) -> [f64; FSR_COUNT] {
         [load + x + y, load + x - y, load - x - y, load - x + y].map(|four| four / 4.0)
     }
 
-    fn step(drift: &mut Drift, read_mn: [i32; FSR_COUNT], loaded_mn: i32, motor: Motor) -> Cells {
-        let cells = drift.step(read_mn, loaded_mn, motor.opened);
-        drift.think(read_mn, loaded_mn, motor.still);
+    fn step(drift: &mut Drift, read_mn: [i32; FSR_COUNT], still: u32) -> Cells {
+        let cells = drift.step(read_mn, LOADED_MN, false);
+        drift.think(read_mn, LOADED_MN, still);
         cells
     }
 
@@ -225,11 +207,10 @@ mod tests {
         }
     }
 
-    /// Taken, and held for a second.
     fn holding(cells: [f64; FSR_COUNT]) -> Drift {
         let mut drift = Drift::default();
-        (0..40).for_each(|_| _ = step(&mut drift, read(cells), LOADED_MN, MOVES));
-        (0..40).for_each(|_| _ = step(&mut drift, read(cells), LOADED_MN, STILL));
+        (0..40).for_each(|_| _ = step(&mut drift, read(cells), MOVES));
+        (0..40).for_each(|_| _ = step(&mut drift, read(cells), STILL));
         drift
     }
 
@@ -245,7 +226,7 @@ mod tests {
                 let x = 1_200.0 + pours * 70.0 * t_s.min(7.0);
                 let mut true_cells = cells(6_500.0, x, 0.0);
                 true_cells[cell] += way * 100.0 * t_s;
-                let [a, b, c, d] = known(step(&mut drift, read(true_cells), LOADED_MN, STILL));
+                let [a, b, c, d] = known(step(&mut drift, read(true_cells), STILL));
                 let (fx, fy) = (f64::from(a + b - c - d), f64::from(a + d - b - c));
                 let off = (fx - x).hypot(fy);
                 assert!(off < 750.0, "cell {cell}, {way}, {pours}: {off} mN after {t_s} s, {drift:?}");
@@ -266,7 +247,7 @@ mod tests {
             let turn = f64::from(n) / 80.0;
             let load = 4_000.0 + f64::from(n) * 2.0;
             let now = with(cells(load, 0.3 * load * turn.sin(), 0.3 * load * turn.cos()));
-            assert_eq!(known(step(&mut drift, read(now), LOADED_MN, MOVES)), read(now));
+            assert_eq!(known(step(&mut drift, read(now), MOVES)), read(now));
         }
         assert_eq!(drift.blamed(), None);
     }
@@ -277,18 +258,15 @@ mod tests {
         let mut seen = Vec::new();
         for n in 0..80 * 30 {
             let sunk = f64::from(n) / 80.0 * 100.0;
-            match step(&mut drift, read(cells(6_500.0, 1_200.0, 0.0).map(|mn| mn - sunk)), LOADED_MN, STILL) {
+            match step(&mut drift, read(cells(6_500.0, 1_200.0, 0.0).map(|mn| mn - sunk)), STILL) {
                 Cells::Known(cells) => seen.push(cells.iter().sum::<i32>()),
                 Cells::Sunk => break,
             }
         }
         assert!((80 * 12..80 * 16).contains(&seen.len()), "{}", seen.len());
         assert!(seen.iter().all(|load| (5_100..=6_500).contains(load)), "{:?}", seen.last());
-        assert_eq!(step(&mut drift, [0; FSR_COUNT], LOADED_MN, STILL), Cells::Sunk);
-        assert_eq!(
-            known(step(&mut drift, [0; FSR_COUNT], LOADED_MN, Motor { still: 0, opened: true })),
-            [0; 4]
-        );
+        assert_eq!(step(&mut drift, [0; FSR_COUNT], STILL), Cells::Sunk);
+        assert_eq!(known(drift.step([0; FSR_COUNT], LOADED_MN, true)), [0; 4]);
     }
 
     #[test]
@@ -298,9 +276,9 @@ mod tests {
             let mut load = 6_500.0;
             while load > 0.0 {
                 load -= falls_mn;
-                step(&mut drift, read(cells(load, 0.0, 0.0)), LOADED_MN, motor);
+                step(&mut drift, read(cells(load, 0.0, 0.0)), motor);
             }
-            assert_eq!(known(step(&mut drift, [0; FSR_COUNT], LOADED_MN, motor)), [0; FSR_COUNT]);
+            assert_eq!(known(step(&mut drift, [0; FSR_COUNT], motor)), [0; FSR_COUNT]);
         }
     }
 
@@ -313,12 +291,12 @@ mod tests {
                 off += way * 1.25;
                 let mut now = cells(6_500.0, 0.0, 0.0);
                 now[2] += off;
-                step(&mut drift, read(now), LOADED_MN, STILL);
+                step(&mut drift, read(now), STILL);
             }
             assert_eq!(drift.blamed(), Some(2));
             let mut empty = [0.0; FSR_COUNT];
             empty[2] += off;
-            let cells = known(step(&mut drift, read(empty), LOADED_MN, MOVES));
+            let cells = known(step(&mut drift, read(empty), MOVES));
             assert!(cells.iter().all(|&mn| mn <= CARRIES_MN), "{cells:?}");
         }
     }

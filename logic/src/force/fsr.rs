@@ -1,5 +1,5 @@
-//! Voltage of a force sensing resistor's quadrant to force: the inverse of `front_end::fsr_mv` as a table of
-//! [`KNOTS`], straight lines between; error below 2 % or 6 mN.
+//! Force of a quadrant from its voltage: the inverse of `front_end::fsr_mv` as a table of [`KNOTS`]; error
+//! below 2 % or 6 mN.
 
 use tenax_hal_shim::channel::{REFERENCE_MV, SAMPLE_MAX};
 use tenax_hal_shim::front_end::FSR_REST_MV;
@@ -55,24 +55,15 @@ mod tests {
     }
 
     #[test]
-    fn the_table_is_the_inverse_of_the_front_end() {
+    fn the_table_is_the_inverse_of_the_front_end_and_saturates() {
         for (uv, mn) in KNOTS {
             assert_eq!(mn, exact_mn(f64::from(uv)).round() as i32, "at {uv} uV");
         }
-    }
-
-    #[test]
-    fn between_knots_the_error_is_below_two_percent_and_six_millinewtons() {
         for uv in (0..3_000_000).step_by(997) {
             let error = (f64::from(force_mn(uv)) - exact_mn(f64::from(uv))).abs();
             assert!(error < 6.0_f64.max(0.02 * exact_mn(f64::from(uv))), "{error} mN at {uv} uV");
         }
-    }
-
-    #[test]
-    fn outside_the_table_it_saturates() {
         assert_eq!((force_mn(i32::MIN), force_mn(-1), force_mn(i32::MAX)), (0, 0, 23_628));
-        assert_eq!(uv_above_rest(0), -200_000);
-        assert_eq!(uv_above_rest(SAMPLE_MAX), 3_100_000);
+        assert_eq!((uv_above_rest(0), uv_above_rest(SAMPLE_MAX)), (-200_000, 3_100_000));
     }
 }

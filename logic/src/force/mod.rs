@@ -1,5 +1,4 @@
-//! Normal and shear force from the four-quadrant force sensor, its drift, and warnings from their ratio (S2,
-//! look-ahead).
+//! Normal and shear force from four quadrants, their drift, and warnings from the ratio (S2, look-ahead).
 
 mod ahead;
 mod asked;

@@ -1,9 +1,6 @@
-//! Normal and tangential force from the four quadrants (Prosthesis, section 4).
-//!
-//! The paper's `Fn = sqrt(A^2 + B^2 + C^2 + D^2)`, scaled by two, is exact for an even load and `sqrt(1 +
-//! (Ft/P)^2)` too large under a shear along an axis, so a true ratio r reads `r / sqrt(1 + r^2)`. S2 is on
-//! this scale. Decisions on a force use the load, the sum of the quadrants. A ratio is valid only if most
-//! quadrants carry a load: a speck under one would read as a large shear.
+//! Normal and tangential force from the four quadrants (Prosthesis, section 4). The paper's `Fn = sqrt(A^2 +
+//! B^2 + C^2 + D^2)`, times two, is exact for an even load; under a shear a true ratio r reads `r / sqrt(1 +
+//! r^2)`, and S2 is on this scale. Decisions on a force use the load, the sum of the quadrants.
 
 use tenax_hal_shim::channel::FSR_COUNT;
 use tenax_hal_shim::wire::Forces;
@@ -11,28 +8,23 @@ use tenax_hal_shim::wire::Forces;
 use super::drift::{Cells, Drift};
 use super::fsr::{force_mn, uv_above_rest};
 
-/// Largest zero of a quadrant, uV above rest: more is a load, not an offset.
 pub const ZERO_LIMIT_UV: i32 = 60_000;
-
-/// Least force of a quadrant that carries a part of the load, mN: more than its noise.
 pub(super) const CARRIES_MN: i32 = 15;
 /// Quadrants that have to carry a load. A shear along a diagonal may unload one.
 const AGREEING: usize = 3;
-/// Readings over which a zero follows while the hand is open: 0.8 s.
 const FOLLOWED_IN: i32 = 64;
 
 #[derive(Clone, Debug, Default)]
 pub struct ForceSensor {
     zero_uv: [i32; FSR_COUNT],
-    /// Drift of the zeros that an open hand shows, uV.
     drift_uv: [i32; FSR_COUNT],
     last_uv: [i32; FSR_COUNT],
     drift: Drift,
 }
 
 impl ForceSensor {
-    /// One 14-bit sample of each quadrant A, B, C, D. `loaded_mn`: load from which Ft/Fn is valid. `opened`:
-    /// the motor has opened the hand since it last closed it. None once the quadrants have drifted too far.
+    /// One sample of each quadrant. `loaded_mn`: load from which Ft/Fn is valid. `opened`: the motor has opened
+    /// the hand since it last closed it. None once the quadrants have drifted too far.
     pub fn process(&mut self, samples: [u16; FSR_COUNT], loaded_mn: i32, opened: bool) -> Option<Forces> {
         self.last_uv = samples.map(uv_above_rest);
         match self.drift.step(self.quadrants(), loaded_mn, opened) {
@@ -41,17 +33,14 @@ impl ForceSensor {
         }
     }
 
-    /// Quadrant (0 to 3) whose reading contradicts the other three.
     pub fn blamed(&self) -> Option<usize> {
         self.drift.blamed()
     }
 
-    /// Once after each reading. `still`: readings since the motor was driven.
     pub fn think(&mut self, loaded_mn: i32, still: u32) {
         self.drift.think(self.quadrants(), loaded_mn, still);
     }
 
-    /// mN.
     fn quadrants(&self) -> [i32; FSR_COUNT] {
         core::array::from_fn(|n| force_mn(self.last_uv[n] - self.zero_uv[n] - self.drift_uv[n]))
     }
@@ -68,7 +57,6 @@ impl ForceSensor {
         unloaded
     }
 
-    /// Call it while the hand is surely open. A reading beyond [`ZERO_LIMIT_UV`] is a load.
     pub fn follow(&mut self) {
         for ((drift, zero), &uv) in self.drift_uv.iter_mut().zip(&self.zero_uv).zip(&self.last_uv) {
             if uv.abs() <= ZERO_LIMIT_UV {
@@ -83,7 +71,6 @@ impl ForceSensor {
         &self.zero_uv
     }
 
-    /// uV above rest; the caller has checked [`ZERO_LIMIT_UV`].
     pub const fn restore_zero(&mut self, zero_uv: [i32; FSR_COUNT]) {
         self.zero_uv = zero_uv;
     }

@@ -1,12 +1,9 @@
-//! Settings of S2.
-
 use crate::setting::settings;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FrictionConfig {
     pub s2_permille: u16,
     pub s2_of_mu_s_permille: u16,
-    /// Below it, noise divided by a small Fn would be a large ratio, mN.
     pub loaded_mn: i32,
 }
 

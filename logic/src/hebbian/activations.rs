@@ -1,5 +1,5 @@
-//! Activations of the tactile nodes: readings over their maximum (Tada 2006, section II.C). The sign of a
-//! vibration is dropped; that of a pressure is kept. The reading of an unloaded finger can be taken as zero.
+//! Activations of the tactile nodes: readings over their maximum (Tada 2006, section II.C), without the sign of
+//! a vibration.
 
 use dsp_fixedpoint::Q32;
 
@@ -7,7 +7,6 @@ use super::arithmetic::Reciprocal;
 
 /// 2^26 is 1; within +-1.
 pub type Activation = Q32<26>;
-
 const RATIO_SHIFT: u32 = 30 - 26;
 const RATIO_HALF: u32 = 1 << (RATIO_SHIFT - 1);
 const ONE: i32 = 1 << 26;
@@ -16,7 +15,6 @@ const ONE: i32 = 1 << 26;
 pub enum Sense {
     /// The sign is dropped: 0 to 1.
     Vibration,
-    /// The sign is the direction of load or shear: -1 to 1.
     Pressure,
 }
 
@@ -34,7 +32,6 @@ impl<const N: usize> Activations<N> {
         Self(activations.map(|activation| activation.into_bits().clamp(-ONE, ONE)))
     }
 
-    /// 2^26 is 1.
     pub const fn as_bits(&self) -> &[i32; N] {
         &self.0
     }
@@ -43,43 +40,34 @@ impl<const N: usize> Activations<N> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NormaliserConfig<const N: usize> {
     pub senses: [Sense; N],
-    /// Smallest maximum of each receptor, raw, so that the noise of a dead receptor stays small. 0 counts as
-    /// 1.
+    /// Smallest maximum of each receptor, raw: a dead receptor's noise stays small. 0 counts as 1.
     pub floors: [u32; N],
     /// Range of the front end, raw: larger values clip.
     pub ceiling: u32,
-    /// The maximum is that of an average over about `2^average_shift` readings, 16 at most, so that a spike
-    /// makes no receptor insensitive.
+    /// The maximum is that of an average over about `2^average_shift` readings, shift at most 16.
     pub average_shift: u32,
 }
 
-/// The sum of 2^16 readings of 32 bits is below 2^48.
 const AVERAGE_SHIFT_MAX: u32 = 16;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Scale {
-    zero: i32,
-    /// `2^average_shift` times the average.
     sum: u64,
     largest: u32,
     reciprocal: Reciprocal,
 }
 
 impl Scale {
-    const fn new(zero: i32, largest: u32) -> Self {
+    const fn new(largest: u32) -> Self {
         let largest = if largest == 0 { 1 } else { largest };
-        Self { zero, sum: 0, largest, reciprocal: Reciprocal::of(largest) }
-    }
-
-    fn size(&self, raw: i32) -> u32 {
-        raw.saturating_sub(self.zero).unsigned_abs()
+        Self { sum: 0, largest, reciprocal: Reciprocal::of(largest) }
     }
 
     fn activation(&self, sense: Sense, raw: i32) -> i32 {
-        let ratio = self.reciprocal.ratio(self.size(raw).min(self.largest));
+        let ratio = self.reciprocal.ratio(raw.unsigned_abs().min(self.largest));
         let size = ((ratio + RATIO_HALF) >> RATIO_SHIFT) as i32;
         match sense {
-            Sense::Pressure if raw < self.zero => -size,
+            Sense::Pressure if raw < 0 => -size,
             Sense::Pressure | Sense::Vibration => size,
         }
     }
@@ -92,45 +80,24 @@ pub struct Normaliser<const N: usize> {
 
 impl<const N: usize> Normaliser<N> {
     pub fn new(config: &NormaliserConfig<N>) -> Self {
-        Self { scales: config.floors.map(|floor| Scale::new(0, floor.min(config.ceiling))) }
+        Self { scales: config.floors.map(|floor| Scale::new(floor.min(config.ceiling))) }
     }
 
-    /// Keeps the zeros. Weights that were learned with other maxima are then invalid.
-    pub fn reset(&mut self, config: &NormaliserConfig<N>) {
-        let fresh = Self::new(config);
-        for (scale, fresh) in self.scales.iter_mut().zip(fresh.scales) {
-            *scale = Scale { zero: scale.zero, ..fresh };
-        }
-    }
-
-    /// Call it only while the finger is known to be unloaded, never in a grasp.
-    pub fn zero(&mut self, raw: &[i32; N]) {
-        for (scale, &raw) in self.scales.iter_mut().zip(raw) {
-            scale.zero = raw;
-        }
-    }
-
-    /// Lets the maxima rise. Call it only when learning is allowed, so that an impact or a noisy motor makes
-    /// no receptor insensitive.
+    /// Lets the maxima rise. Call it only when learning is allowed.
     pub fn observe(&mut self, config: &NormaliserConfig<N>, raw: &[i32; N]) {
         let shift = config.average_shift.min(AVERAGE_SHIFT_MAX);
         for (scale, &raw) in self.scales.iter_mut().zip(raw) {
-            let size = scale.size(raw).min(config.ceiling);
+            let size = raw.unsigned_abs().min(config.ceiling);
             // The sum settles at 2^shift times the size and does not pass it.
             scale.sum = scale.sum - (scale.sum >> shift) + u64::from(size);
             let average = (scale.sum >> shift).min(u64::from(config.ceiling)) as u32;
             if average > scale.largest {
-                *scale = Scale { sum: scale.sum, ..Scale::new(scale.zero, average) };
+                *scale = Scale { sum: scale.sum, ..Scale::new(average) };
             }
         }
     }
 
-    /// Within 2^-25 of the exact quotient; no division.
-    pub fn activations(&self, config: &NormaliserConfig<N>, raw: &[i32; N]) -> Activations<N> {
-        Activations(core::array::from_fn(|n| self.scales[n].activation(config.senses[n], raw[n])))
-    }
-
-    /// New readings of the receptors from `first` on; the other activations stay.
+    /// New readings of the receptors from `first` on, within 2^-25 of the exact quotient; the others stay.
     #[inline]
     pub fn renew(
         &self,
@@ -147,7 +114,7 @@ impl<const N: usize> Normaliser<N> {
         };
         for (((scale, &sense), slot), &raw) in scales.iter().zip(senses).zip(slots).zip(raw) {
             // Most films are quiet most of the time.
-            *slot = if raw == scale.zero { 0 } else { scale.activation(sense, raw) };
+            *slot = if raw == 0 { 0 } else { scale.activation(sense, raw) };
         }
     }
 
@@ -155,11 +122,10 @@ impl<const N: usize> Normaliser<N> {
         self.scales.map(|scale| scale.largest)
     }
 
-    /// Each clamped between its floor and the ceiling.
     pub fn from_maxima(config: &NormaliserConfig<N>, maxima: &[u32; N]) -> Self {
         let mut normaliser = Self::new(config);
         for (scale, &largest) in normaliser.scales.iter_mut().zip(maxima) {
-            *scale = Scale::new(0, largest.max(scale.largest).min(config.ceiling));
+            *scale = Scale::new(largest.max(scale.largest).min(config.ceiling));
         }
         normaliser
     }
@@ -177,7 +143,9 @@ mod tests {
     };
 
     fn seen(normaliser: &Normaliser<2>, raw: [i32; 2]) -> [f64; 2] {
-        normaliser.activations(&CONFIG, &raw).as_bits().map(|t| f64::from(t) / f64::from(ONE))
+        let mut activations = Activations::default();
+        normaliser.renew(&CONFIG, 0, &raw, &mut activations);
+        activations.as_bits().map(|t| f64::from(t) / f64::from(ONE))
     }
 
     #[test]
@@ -205,17 +173,5 @@ mod tests {
         }
         assert!((8_090..=8_100).contains(&normaliser.maxima()[0]), "{:?}", normaliser.maxima());
         assert_eq!(normaliser.maxima()[1], 100);
-        normaliser.reset(&config);
-        assert_eq!(normaliser.maxima(), [100, 100]);
-    }
-
-    #[test]
-    fn an_offset_taken_as_zero_is_gone() {
-        let mut normaliser = Normaliser::new(&CONFIG);
-        normaliser.zero(&[7_000, -7_000]);
-        normaliser.observe(&CONFIG, &[7_200, -7_200]);
-        assert_eq!(normaliser.maxima(), [200, 200]);
-        assert_eq!(seen(&normaliser, [7_000, -7_000]), [0.0, 0.0]);
-        assert_eq!(seen(&normaliser, [6_900, -7_100]), [0.5, -0.5]);
     }
 }

@@ -1,12 +1,9 @@
-//! The Hebbian detector: films' envelopes and gauges' loads are the network's inputs, a camera teaches it
-//! over the line, and its outputs from touch alone report slip and warn of it.
+//! The Hebbian detector: films and gauges are the network's inputs, a camera teaches it over the line at 1 kHz,
+//! and its outputs from touch alone report slip and warn of it.
 //!
-//! Lessons are taught at 1 kHz, in every other tick; the maxima rise in the ticks between. Slip is reported
-//! while the films' part of o1 is far enough below 0 (and below the films' own noise,
-//! [`noise`](super::noise)) on a finger that holds something, and not while an impact rings or the motor runs
-//! fast. The gauges' part grows with the grip and is not used. Slip begins in one place: vibration of all
-//! films is slip only if it lasts. Ft/Fn near the learned ratio ([`Ahead`]) is a warning. The direction comes
-//! from the gauges alone (Tada 2006, section I).
+//! Slip is reported while the films' part of o1 is far enough below 0 and below the films' own [`noise`](super::noise)
+//! on a finger that holds something, and nothing is loud. Vibration of all films is slip only if it lasts. Ft/Fn
+//! near the learned ratio ([`Ahead`]) is a warning. The direction comes from the gauges (Tada 2006, section I).
 
 use core::ops::Range;
 
@@ -16,12 +13,9 @@ use tenax_hal_shim::schedule::{Job, slot_of};
 use tenax_hal_shim::wire::{Forces, NETWORK_OUTPUTS, NetworkState, RECEPTORS};
 use tenax_hal_shim::words::{Code, Codes, NoLesson};
 
-use super::balance::Balance;
 use super::noise::Noise;
 use super::pvdf_part::PvdfPart;
-use super::{
-    Activations, FingertipNetwork, Normaliser, NormaliserConfig, Output, Sense, Situation, Teacher, snapshot,
-};
+use super::{Activations, FingertipNetwork, Normaliser, NormaliserConfig, Output, Sense, Teacher, snapshot};
 use crate::detectors::{Description, Detector, Said, Sensed, confidence};
 use crate::force::Ahead;
 use crate::hebbian::settings::HebbianConfig;
@@ -29,7 +23,6 @@ use crate::hebbian::settings::HebbianConfig;
 pub type Learned = snapshot::Contents<RECEPTORS, NETWORK_OUTPUTS>;
 pub const SNAPSHOT_LENGTH: usize = snapshot::length(RECEPTORS, NETWORK_OUTPUTS);
 
-/// Raw readings are samples (14 bits) with 4 fraction bits.
 pub static NORMALISER: NormaliserConfig<RECEPTORS> = NormaliserConfig {
     senses: {
         let mut senses = [Sense::Pressure; RECEPTORS];
@@ -57,10 +50,7 @@ pub static NORMALISER: NormaliserConfig<RECEPTORS> = NormaliserConfig {
 const FILMS: Range<usize> = 0..PVDF_COUNT;
 const GAUGES: Range<usize> = PVDF_COUNT..RECEPTORS;
 const ONE: i64 = 1 << 26;
-/// Most films that hear slip that is not everywhere.
 const SOMEWHERE_MAX: usize = 6;
-
-/// The tick after the forces, which has more room than theirs.
 const SHEAR_IS_JUDGED: u8 = slot_of(Job::Forces) + 1;
 const CYCLE_ENDS: u8 = 20;
 /// Least value of the second output that tells a direction; 128 is 1.
@@ -140,7 +130,7 @@ impl Detector for HebbianDetector {
             _ => Direction::Unknown,
         };
         let health =
-            if self.pvdf_part.is_quiet_known() { DetectorHealth::Working } else { DetectorHealth::Starting };
+            if self.pvdf_part.quiet_known { DetectorHealth::Working } else { DetectorHealth::Starting };
         Description {
             confidence_permille: confidence(-raw, config.slip_permille.into()),
             direction,
@@ -153,7 +143,7 @@ impl Detector for HebbianDetector {
 impl HebbianDetector {
     fn tick(&mut self, config: &HebbianConfig, sensed: &Sensed<'_>) {
         let learns = self.lesson.is_ok();
-        if self.pvdf_part.is_outdated() && !learns {
+        if self.pvdf_part.stale && !learns {
             self.know_gains();
         }
         let mut by_films = self.pvdf_part.process(sensed);
@@ -172,14 +162,13 @@ impl HebbianDetector {
         self.judge(config, sensed, by_films);
         self.noise.add(by_films);
         if sensed.slot == CYCLE_ENDS {
-            let quiet = self.pvdf_part.is_quiet_known() && self.since_loud_frames >= config.loud_frames;
+            let quiet = self.pvdf_part.quiet_known && self.since_loud_frames >= config.loud_frames;
             self.noise.end_cycle(sensed.unloaded && quiet);
         }
         self.learn(config, sensed, learns);
     }
 
-    /// Call it in slot [`SHEAR_IS_JUDGED`], before its tick. `anew`: nothing is touched, or a muscle is
-    /// active.
+    /// Call it in slot [`SHEAR_IS_JUDGED`], before its tick. `anew`: nothing is touched, or a muscle is active.
     #[inline(never)]
     fn foretell(&mut self, config: &HebbianConfig, forces: Option<&Forces>, grasp: bool, anew: bool) {
         if anew {
@@ -191,7 +180,7 @@ impl HebbianDetector {
 
     #[inline(never)]
     fn feel_films(&mut self) {
-        self.normaliser.renew(&NORMALISER, 0, self.pvdf_part.heard(), &mut self.activations);
+        self.normaliser.renew(&NORMALISER, 0, &self.pvdf_part.heard, &mut self.activations);
     }
 
     #[inline(never)]
@@ -225,15 +214,15 @@ impl HebbianDetector {
     }
 
     pub fn teach(&mut self, config: &HebbianConfig, codes: Codes, age_ms: u16) {
-        self.teacher.receive(&config.teacher, codes, age_ms);
+        self.teacher.receive(config.teacher_fresh_ms, codes, age_ms);
     }
 
     pub fn forget(&mut self) {
-        self.normaliser.reset(&NORMALISER);
+        self.normaliser = Normaliser::new(&NORMALISER);
         self.network = FingertipNetwork::default();
         self.by_gauges = [0; NETWORK_OUTPUTS];
         self.weights_changed = true;
-        self.pvdf_part.outdate();
+        self.pvdf_part.stale = true;
         self.shear = Ahead::default();
         self.noise = Noise::default();
         self.balance = Balance::default();
@@ -263,7 +252,7 @@ impl HebbianDetector {
 
     pub fn state(&self, frame: u32) -> NetworkState {
         let mut activations = self.activations;
-        self.normaliser.renew(&NORMALISER, 0, self.pvdf_part.heard(), &mut activations);
+        self.normaliser.renew(&NORMALISER, 0, &self.pvdf_part.heard, &mut activations);
         NetworkState {
             frame,
             weights: self.network.weights().map(|row| row.map(|weight| weight.into_bits())),
@@ -287,7 +276,7 @@ impl HebbianDetector {
         self.shear.restore(slips_at);
         self.noise = Noise::default();
         self.weights_changed = true;
-        self.pvdf_part.outdate();
+        self.pvdf_part.stale = true;
         true
     }
 
@@ -298,7 +287,7 @@ impl HebbianDetector {
         let says = sensed.grasp
             && self.since_loud_frames >= config.loud_frames
             && sum * 1_000 <= -threshold * ONE
-            && sum <= -self.noise.floor() / if self.films_say { 2 } else { 1 };
+            && sum <= -self.noise.floor / if self.films_say { 2 } else { 1 };
         if !says {
             self.said_frames = 0;
             self.films_say = false;
@@ -321,9 +310,9 @@ impl HebbianDetector {
 
     fn learn(&mut self, config: &HebbianConfig, sensed: &Sensed<'_>, felt_so: bool) {
         let disturbed = sensed.vibration.impact || sensed.moves || !sensed.vibration_known;
-        self.lesson = self.teacher.lesson(&config.teacher, Situation { grasp: sensed.grasp, disturbed });
+        self.lesson = self.teacher.lesson(config.teacher_fresh_ms, sensed.grasp, disturbed);
         if let Ok(codes) = self.lesson {
-            self.pvdf_part.outdate();
+            self.pvdf_part.stale = true;
             if sensed.slot == SHEAR_IS_JUDGED && codes[0] == Code::Minus {
                 self.shear.learn();
             }
@@ -332,13 +321,13 @@ impl HebbianDetector {
             }
             if self.odd {
                 let codes = self.balance.admit(codes);
-                self.network.learn_some(&config.rule, &self.activations, &codes);
+                self.network.learn(&config.rule, &self.activations, &codes);
                 self.weights_changed = true;
                 self.updates = self.updates.saturating_add(1);
             } else {
                 let mut readings = [0; RECEPTORS];
                 let (films, gauges) = readings.split_at_mut(PVDF_COUNT);
-                films.copy_from_slice(self.pvdf_part.heard());
+                films.copy_from_slice(&self.pvdf_part.heard);
                 gauges.copy_from_slice(&sensed.strain.loads());
                 self.normaliser.observe(&NORMALISER, &readings);
             }
@@ -357,4 +346,25 @@ impl HebbianDetector {
 /// Equation 4.
 fn output(sum: i64) -> Output {
     Output::from_bits(sum.clamp(-ONE, ONE) as i32)
+}
+
+const AHEAD_MAX: i16 = 2_000;
+
+/// Lessons of each code less those of its opposite: Hebb's rule lets a constant input learn whichever code was
+/// taught longer.
+#[derive(Clone, Copy, Debug, Default)]
+struct Balance([i16; NETWORK_OUTPUTS]);
+
+impl Balance {
+    fn admit(&mut self, codes: Codes) -> [Option<Code>; NETWORK_OUTPUTS] {
+        let mut admitted = [None; NETWORK_OUTPUTS];
+        for ((ahead, slot), code) in self.0.iter_mut().zip(&mut admitted).zip(codes) {
+            let after = *ahead + code.sign() as i16;
+            if after.abs() <= AHEAD_MAX {
+                *ahead = after;
+                *slot = Some(code);
+            }
+        }
+        admitted
+    }
 }

@@ -1,22 +1,19 @@
-//! Parts that readings of vibration add to an output, in one multiplication each: weight over maximum, kept
-//! while nothing is learned. Within 2^-24 of [`Network::parts`](super::Network::parts), in the same format
-//! (Q26).
+//! Parts that films add to an output, in one multiplication each: weight over maximum, Q26, within 2^-24 of
+//! [`Network::parts`](super::Network::parts).
 
 use super::arithmetic::Reciprocal;
 use super::network::Weight;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Gain {
-    /// Larger readings are limited to it (activation 1).
     largest: u32,
-    /// Left shift of a reading, so that the maximum has 31 bits.
     shift: u32,
     /// Weight over the maximum's mantissa, Q26, within +-16.
     factor: i32,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Gains<const N: usize>([Gain; N]);
+pub struct Gains<const N: usize>(pub [Gain; N]);
 
 impl<const N: usize> Default for Gains<N> {
     fn default() -> Self {
@@ -35,10 +32,6 @@ impl<const N: usize> Gains<N> {
             *gain = Gain { largest, shift: reciprocal.shift.saturating_sub(1), factor: factor as i32 };
         }
         gains
-    }
-
-    pub const fn each(&self) -> &[Gain; N] {
-        &self.0
     }
 }
 
@@ -80,7 +73,7 @@ mod tests {
             normaliser.renew(&CONFIG, 0, &readings, &mut activations);
             let network = Network::<4, 1>::from_weights(&weights);
             let gains = Gains::<4>::of(&network.weights()[0], &maxima);
-            let parts = gains.each().iter().zip(readings).map(|(gain, reading)| gain.part(reading));
+            let parts = gains.0.iter().zip(readings).map(|(gain, reading)| gain.part(reading));
             for (part, exact) in parts.zip(network.parts(0, 0..4, &activations)) {
                 assert!((part - exact).abs() <= 16, "{part} {exact} of {readings:?} {maxima:?} {weights:?}");
             }

@@ -1,19 +1,15 @@
-//! The Hebbian network, which learns slip from a camera (Tada 2006, equations 1 to 6). `docs/hebbian.md` has
-//! the measured limits.
+//! The Hebbian network, which learns slip from a camera (Tada 2006, equations 1 to 6; limits in
+//! `docs/hebbian.md`), in integers: tactile nodes t_j ([`activations`]), weights w_ij ([`network`]), outputs
+//! o_i, codes v_i ([`teacher`]).
 //!
 //! ```text
 //! o_i   = f(sum_j t_j w_ij + v_i)                            (3), f clips at +-1 (4)
 //! dw_ij = alpha r_ij t_j v_i - beta w_ij                     (5)
 //! r_ij  = (|w_ij| + delta) / ((sum_j |w_ij|) + delta)        (6)
 //! ```
-//!
-//! Tactile nodes t_j ([`activations`]) are connected to outputs o_i by weights w_ij ([`network`]); a camera
-//! gives codes v_i ([`teacher`]). Everything is integer: a single drops an update below 2^-24 of its weight,
-//! which is every useful one at 1 kHz.
 
 pub mod activations;
 mod arithmetic;
-mod balance;
 pub mod detector;
 pub mod gains;
 pub mod network;
@@ -29,12 +25,9 @@ pub use detector::{HebbianDetector, Learned, NORMALISER, SNAPSHOT_LENGTH};
 pub use gains::Gains;
 pub use network::{Network, Output, Weight};
 pub use rule::{Config, Config as LearningConfig, Rule};
-pub use teacher::{Situation, Teacher, TeacherConfig};
+pub use teacher::Teacher;
+/// 12 vibration, 12 pressure (Tada 2006, section III.A); relative motion (o1) and direction (o2).
+pub use tenax_hal_shim::wire::{NETWORK_OUTPUTS as OUTPUTS, RECEPTORS};
 pub use tenax_hal_shim::words::{Code, Codes, NoLesson};
-
-/// 12 vibration, 12 pressure (Tada 2006, section III.A).
-pub const RECEPTORS: usize = 24;
-/// Relative motion (o1) and direction (o2).
-pub const OUTPUTS: usize = 2;
 
 pub type FingertipNetwork = Network<RECEPTORS, OUTPUTS>;

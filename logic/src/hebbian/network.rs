@@ -26,13 +26,8 @@ use tenax_hal_shim::words::Code;
 pub type Weight = Q32<27>;
 /// 2^26 is 1.
 pub type Output = Q32<26>;
-
-const ONE: i64 = 1 << 26;
-/// Largest weight, and the smallest's complement: a little less than 8.
 const LIMIT: i32 = (1 << 30) - 1;
-/// From a weight (Q27) to a magnitude (Q23), for r.
 const MAGNITUDE_SHIFT: u32 = 27 - 23;
-/// More inputs could overflow the sums.
 const INPUTS_MAX: usize = 31;
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -52,22 +47,6 @@ impl<const INPUTS: usize, const OUTPUTS: usize> Default for Network<INPUTS, OUTP
 }
 
 impl<const INPUTS: usize, const OUTPUTS: usize> Network<INPUTS, OUTPUTS> {
-    /// Equations 3 and 4, -1 to 1. With both codes [`Code::Zero`] they depend on the receptors alone.
-    pub fn output(&self, activations: &Activations<INPUTS>, codes: &[Code; OUTPUTS]) -> [Output; OUTPUTS] {
-        let mut outputs = [Output::default(); OUTPUTS];
-        for ((output, weights), &code) in outputs.iter_mut().zip(&self.weights).zip(codes) {
-            let sum: i64 = weights
-                .iter()
-                .zip(activations.as_bits())
-                .map(|(&weight, &t)| i64::from(in_use(weight)) * i64::from(t))
-                .sum();
-            // The code is added before the sum is cut to 32 bits.
-            let with_code = (sum >> 27) + i64::from(code.sign()) * ONE;
-            *output = Output::from_bits(with_code.clamp(-ONE, ONE) as i32);
-        }
-        outputs
-    }
-
     /// Part of each receptor before clipping, units of [`Output`], rounded down; empty out of range.
     #[inline]
     pub fn parts(
@@ -101,18 +80,8 @@ impl<const INPUTS: usize, const OUTPUTS: usize> Network<INPUTS, OUTPUTS> {
         self.parts(output, receptors, activations).map(i64::from).sum()
     }
 
-    /// Equations 5 and 6. An output whose code is [`Code::Zero`] only forgets.
-    pub fn learn(&mut self, rule: &Rule, activations: &Activations<INPUTS>, codes: &[Code; OUTPUTS]) {
-        self.learn_some(rule, activations, &codes.map(Some));
-    }
-
-    /// As [`learn`](Self::learn); an output whose code is None keeps its weights.
-    pub fn learn_some(
-        &mut self,
-        rule: &Rule,
-        activations: &Activations<INPUTS>,
-        codes: &[Option<Code>; OUTPUTS],
-    ) {
+    /// Equations 5 and 6. [`Code::Zero`] only forgets; an output without a code keeps its weights.
+    pub fn learn(&mut self, rule: &Rule, activations: &Activations<INPUTS>, codes: &[Option<Code>; OUTPUTS]) {
         for ((weights, magnitudes), code) in self.weights.iter_mut().zip(&mut self.magnitudes).zip(codes) {
             let Some(code) = code else { continue };
             let reciprocal = Reciprocal::of(rule.delta + *magnitudes);
@@ -134,10 +103,6 @@ impl<const INPUTS: usize, const OUTPUTS: usize> Network<INPUTS, OUTPUTS> {
                 *magnitudes += magnitude(*weight);
             }
         }
-    }
-
-    pub fn weight(&self, output: usize, input: usize) -> Option<Weight> {
-        Some(Weight::from_bits(in_use(*self.weights.get(output)?.get(input)?)))
     }
 
     pub fn weights(&self) -> [[Weight; INPUTS]; OUTPUTS] {
@@ -162,21 +127,18 @@ const fn in_use(weight: i64) -> i32 {
     (weight >> 32) as i32
 }
 
-/// Product of a weight and an activation, units of [`Output`], rounded down: the upper word of `(2 w) (16
-/// t)`, one instruction; neither factor leaves 32 bits.
+/// Product, units of [`Output`], rounded down: the upper word of `(2 w) (16 t)`, one instruction.
 const fn part(weight: i64, t: i32) -> i32 {
     (((in_use(weight) << 1) as i64 * (t << 4) as i64) >> 32) as i32
 }
 
-/// |w|, Q23, below 2^26. A negative number's complement is its magnitude less 2^-27, and takes one
-/// instruction.
+/// |w|, Q23, below 2^26. A negative number's complement is its magnitude less 2^-27.
 const fn magnitude(weight: i64) -> u32 {
     let weight = in_use(weight);
     ((weight ^ (weight >> 31)) as u32) >> MAGNITUDE_SHIFT
 }
 
-/// Limits a Q59 weight to +-[`LIMIT`] by its upper word, one SSAT instruction; the lower word may keep any
-/// value.
+/// Limits a Q59 weight to +-[`LIMIT`] by its upper word, one SSAT instruction.
 fn limited(weight: i64) -> i64 {
     let upper = in_use(weight).clamp(-LIMIT - 1, LIMIT);
     (i64::from(upper) << 32) | (weight & 0xFFFF_FFFF)
@@ -185,22 +147,6 @@ fn limited(weight: i64) -> i64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::hebbian::activations::Activation;
-    use crate::hebbian::rule::Config;
-
-    fn activations<const N: usize>(t: [f64; N]) -> Activations<N> {
-        Activations::new(t.map(Activation::from_f64))
-    }
-
-    #[test]
-    fn before_learning_it_repeats_the_teacher() {
-        let network = Network::<3, 2>::default();
-        let t = activations([1.0, -1.0, 0.5]);
-        let one = ONE as i32;
-        let said = |codes| network.output(&t, &codes).map(Output::into_bits);
-        assert_eq!(said([Code::Zero, Code::Zero]), [0, 0]);
-        assert_eq!(said([Code::Minus, Code::Plus]), [-one, one]);
-    }
 
     #[test]
     fn a_part_is_the_products_floor_at_every_end() {
@@ -214,27 +160,5 @@ mod tests {
                 );
             }
         }
-    }
-
-    #[test]
-    fn the_kept_sum_of_magnitudes_is_that_of_the_weights() {
-        let rule = Rule::new(&Config { alpha_ppb: 60_000_000, beta_ppb: 1_000, delta_ppm: 1_000 }).unwrap();
-        let mut network = Network::<24, 2>::default();
-        let mut random = 1u32;
-        for step in 0..3_000 {
-            let t = core::array::from_fn(|_| {
-                random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-                Activation::from_bits((random as i32) >> 5)
-            });
-            let codes = [[Code::Plus, Code::Minus], [Code::Minus, Code::Zero]][step / 500 % 2];
-            network.learn_some(
-                &rule,
-                &Activations::new(t),
-                &[Some(codes[0]), (step % 3 > 0).then_some(codes[1])],
-            );
-            let sums = network.weights.map(|row| row.iter().map(|&weight| magnitude(weight)).sum::<u32>());
-            assert_eq!(network.magnitudes, sums, "{step}");
-        }
-        assert_eq!(Network::from_weights(&network.weights()).magnitudes, network.magnitudes);
     }
 }

@@ -1,6 +1,5 @@
 //! The films' vibration above their quiet level, and its part of o1. The quiet level follows the envelope's
-//! median while the finger is unloaded, and is held in a grasp. A start in a grasp cannot tell noise from
-//! slip: the films are not used until the finger lets go.
+//! median while the finger is unloaded; until it is known, the films are not used.
 
 use tenax_hal_shim::channel::PVDF_COUNT;
 
@@ -10,21 +9,17 @@ use crate::detectors::Sensed;
 
 /// Fraction bits of an envelope (Q16) below the resolution of a film; 4 are left, as a gauge's load has.
 const ENVELOPE_SHIFT: u32 = 12;
-
-/// Step of a quiet level in a tick, 1/16 of a sample: 4 mV in 0.15 s. A constant step makes it the median,
-/// which an impact does not move.
+/// Step of a quiet level in a tick, 1/16 of a sample. A constant step makes it the median.
 const QUIET_STEP: i32 = 1;
 
 #[derive(Clone, Debug, Default)]
 pub(super) struct PvdfPart {
-    /// 1/16 of a sample.
     quiet: [i32; PVDF_COUNT],
-    quiet_known: bool,
+    pub quiet_known: bool,
     /// Envelopes above their quiet levels, 1/16 of a sample.
-    heard: [i32; PVDF_COUNT],
+    pub heard: [i32; PVDF_COUNT],
     gains: Gains<PVDF_COUNT>,
-    /// A weight or a maximum has changed since the gains were computed.
-    stale: bool,
+    pub stale: bool,
 }
 
 impl PvdfPart {
@@ -46,25 +41,9 @@ impl PvdfPart {
         self.parts().map(i64::from).sum()
     }
 
-    pub(super) const fn heard(&self) -> &[i32; PVDF_COUNT] {
-        &self.heard
-    }
-
     #[inline]
     pub(super) fn parts(&self) -> impl Iterator<Item = i32> {
-        self.gains.each().iter().zip(&self.heard).map(|(gain, &heard)| gain.part(heard))
-    }
-
-    pub(super) const fn is_quiet_known(&self) -> bool {
-        self.quiet_known
-    }
-
-    pub(super) const fn outdate(&mut self) {
-        self.stale = true;
-    }
-
-    pub(super) const fn is_outdated(&self) -> bool {
-        self.stale
+        self.gains.0.iter().zip(&self.heard).map(|(gain, &heard)| gain.part(heard))
     }
 
     pub(super) fn renew(&mut self, weights: &[Weight], maxima: &[u32]) {

@@ -1,6 +1,4 @@
-//! Settings of the Hebbian detector.
-
-use super::{LearningConfig, Rule, TeacherConfig};
+use super::{LearningConfig, Rule};
 use crate::setting::settings;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -11,7 +9,7 @@ pub struct HebbianConfig {
     pub loud_frames: u32,
     pub ahead_ms: u16,
     pub loud_duty_permille: u16,
-    pub teacher: TeacherConfig,
+    pub teacher_fresh_ms: u16,
     pub learning: LearningConfig,
     pub rule: Rule,
 }
@@ -35,7 +33,7 @@ settings! {
     /// Motor duty whose noise disturbs the Hebbian detector; a line's closing then silences the reflex
     14 NoisyDuty "noisy-duty-permille" "per mille" [10, 1_000] = 100 => Number(loud_duty_permille);
     /// Teacher's pictures older than this are ignored
-    15 TeacherFresh "teacher-fresh-ms" "ms" [40, 1_000] = 120 => Number(teacher.fresh_ms);
+    15 TeacherFresh "teacher-fresh-ms" "ms" [40, 1_000] = 120 => Number(teacher_fresh_ms);
     /// Hebbian: learning rate alpha of one update (Tada 2006, equation 5)
     16 HebbianAlpha "hebbian-alpha-ppb" "ppb" [0, 16_000_000] = 50_000 => Number(learning.alpha_ppb);
     /// Hebbian: forgetting rate beta of one update (Tada 2006, equation 5)

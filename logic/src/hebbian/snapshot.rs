@@ -13,7 +13,6 @@ use super::network::{Network, Weight};
 use crate::checksum::CRC;
 
 pub const VERSION: u8 = 2;
-
 const HEADER: usize = 4;
 const WORD: usize = 4;
 
@@ -26,7 +25,6 @@ const fn header_of<const I: usize, const O: usize>() -> [u8; HEADER] {
     [VERSION, I as u8, O as u8, 0]
 }
 
-/// Small enough to be copied in a tick; the bytes are made when there is more time.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Contents<const I: usize, const O: usize> {
     maxima: [u32; I],
@@ -39,7 +37,6 @@ impl<const I: usize, const O: usize> Contents<I, O> {
         Self { maxima: normaliser.maxima(), weights: network.weights(), more }
     }
 
-    /// None if the buffer is shorter than [`length`].
     pub fn write<'a>(&self, buffer: &'a mut [u8]) -> Option<&'a [u8]> {
         let snapshot = buffer.get_mut(..length(I, O))?;
         let (body, crc) = snapshot.split_last_chunk_mut::<WORD>()?;
@@ -55,16 +52,6 @@ impl<const I: usize, const O: usize> Contents<I, O> {
         *crc = CRC.checksum(body).to_le_bytes();
         Some(snapshot)
     }
-}
-
-/// None if the buffer is shorter than [`length`].
-pub fn save<'a, const I: usize, const O: usize>(
-    normaliser: &Normaliser<I>,
-    network: &Network<I, O>,
-    more: u32,
-    buffer: &'a mut [u8],
-) -> Option<&'a [u8]> {
-    Contents::of(normaliser, network, more).write(buffer)
 }
 
 pub fn restore<const I: usize, const O: usize>(
@@ -111,13 +98,13 @@ mod tests {
         let mut normaliser = Normaliser::new(&CONFIG);
         normaliser.observe(&CONFIG, &[5, -7_000, 123_456]);
         let mut network = Network::default();
-        let rule = Rule::new(&Config::default()).unwrap();
+        let rule = Rule::of(&Config::default());
         let t = Activations::new([0.3, -0.7, 1.0].map(Activation::from_f64));
         for _ in 0..1_000 {
-            network.learn(&rule, &t, &[Code::Minus, Code::Plus]);
+            network.learn(&rule, &t, &[Some(Code::Minus), Some(Code::Plus)]);
         }
         let mut bytes = [0; LENGTH];
-        assert_eq!(save(&normaliser, &network, 77, &mut bytes).map(<[u8]>::len), Some(LENGTH));
+        assert!(Contents::of(&normaliser, &network, 77).write(&mut bytes).is_some());
         (normaliser, network, bytes)
     }
 
@@ -135,7 +122,7 @@ mod tests {
         assert_eq!(network_back.weights(), network.weights());
         assert_ne!(network.weights(), Network::<3, 2>::default().weights());
         let mut again = [0; LENGTH];
-        assert_eq!(save(&normaliser_back, &network_back, more, &mut again), Some(&bytes[..]));
+        assert_eq!(Contents::of(&normaliser_back, &network_back, more).write(&mut again), Some(&bytes[..]));
     }
 
     #[test]
@@ -154,7 +141,7 @@ mod tests {
             bytes[at] = other;
             assert!(restore::<3, 2>(&CONFIG, &resealed(bytes)).is_none(), "byte {at}");
         }
-        assert_eq!(save(&normaliser, &network, 77, &mut [0; LENGTH - 1]), None);
+        assert_eq!(Contents::of(&normaliser, &network, 77).write(&mut [0; LENGTH - 1]), None);
     }
 
     #[test]
@@ -164,6 +151,6 @@ mod tests {
         bytes[LENGTH - 3 * WORD..LENGTH - 2 * WORD].copy_from_slice(&i32::MIN.to_le_bytes());
         let (normaliser, network, _) = restore::<3, 2>(&CONFIG, &resealed(bytes)).unwrap();
         assert_eq!(normaliser.maxima(), [CONFIG.ceiling; 3]);
-        assert_eq!(network.weight(1, 2).map(Weight::into_bits), Some(-(1 << 30)));
+        assert_eq!(network.weights()[1][2].into_bits(), -(1 << 30));
     }
 }

@@ -1,35 +1,12 @@
 //! The camera as a teacher (Tada 2006, equations 1 and 2). There is a lesson only while the finger holds
-//! something, nothing disturbs it, and fresh codes without contradiction say that something moves; otherwise
-//! weights are neither learned nor forgotten. Codes chatter (section III.B), so each is the median of the
-//! last three messages.
+//! something undisturbed, and fresh codes agree that something moves. Codes chatter (section III.B), so each is
+//! the median of the last three messages.
 
 use tenax_hal_shim::words::{Code, Codes, NoLesson};
 
 use crate::latest;
 
-/// Messages that a code is the median of.
 const MEMORY: usize = 3;
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct TeacherConfig {
-    /// Age of the picture beyond which its codes are not used, ms.
-    pub fresh_ms: u16,
-}
-
-impl Default for TeacherConfig {
-    /// A camera's two frames of 33 ms, one more to be replaced in, and 20 ms on the way.
-    fn default() -> Self {
-        Self { fresh_ms: 120 }
-    }
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Situation {
-    /// Loaded: the receptors feel an object.
-    pub grasp: bool,
-    /// The motor runs, the hand is struck or swung, or a receptor has just been lost.
-    pub disturbed: bool,
-}
 
 #[derive(Clone, Debug, Default)]
 pub struct Teacher {
@@ -39,10 +16,9 @@ pub struct Teacher {
 }
 
 impl Teacher {
-    /// Codes of an older picture than the newest are dropped. After a silence of more than `fresh_ms`, the
-    /// codes before it no longer count.
-    pub fn receive(&mut self, config: &TeacherConfig, codes: Codes, age_ms: u16) {
-        if self.age_ms > config.fresh_ms {
+    /// Codes of an older picture than the newest are dropped; a silence of `fresh_ms` forgets those before it.
+    pub fn receive(&mut self, fresh_ms: u16, codes: Codes, age_ms: u16) {
+        if self.age_ms > fresh_ms {
             self.heard = 0;
         }
         if self.heard > 0 && age_ms > self.age_ms {
@@ -53,7 +29,6 @@ impl Teacher {
         self.age_ms = age_ms;
     }
 
-    /// Call it in every second frame.
     pub fn tick_ms(&mut self) {
         self.age_ms = self.age_ms.saturating_add(1);
     }
@@ -62,11 +37,13 @@ impl Teacher {
         (self.heard > 0).then_some(self.age_ms)
     }
 
-    pub fn lesson(&self, config: &TeacherConfig, situation: Situation) -> Result<Codes, NoLesson> {
+    /// `fresh_ms`: age of the picture beyond which its codes are not used. `disturbed`: the motor runs, the hand
+    /// is struck or swung, or a receptor has just been lost.
+    pub fn lesson(&self, fresh_ms: u16, grasp: bool, disturbed: bool) -> Result<Codes, NoLesson> {
         if self.heard == 0 {
             return Err(NoLesson::Absent);
         }
-        if self.age_ms > config.fresh_ms {
+        if self.age_ms > fresh_ms {
             return Err(NoLesson::Late);
         }
         if self.heard < MEMORY {
@@ -77,8 +54,8 @@ impl Teacher {
             [Code::Zero, Code::Zero] => Err(NoLesson::NothingMoves),
             // "Both the hand and the object do not move", and the hand moves.
             [Code::Zero, _] => Err(NoLesson::Contradicting),
-            _ if !situation.grasp => Err(NoLesson::NoGrasp),
-            _ if situation.disturbed => Err(NoLesson::Disturbed),
+            _ if !grasp => Err(NoLesson::NoGrasp),
+            _ if disturbed => Err(NoLesson::Disturbed),
             _ => Ok(codes),
         }
     }
@@ -99,13 +76,12 @@ mod tests {
     use super::*;
     use Code::{Minus, Plus, Zero};
 
-    const CONFIG: TeacherConfig = TeacherConfig { fresh_ms: 120 };
-    const HELD: Situation = Situation { grasp: true, disturbed: false };
+    const FRESH_MS: u16 = 120;
 
     fn after(messages: &[Codes]) -> Teacher {
         let mut teacher = Teacher::default();
         for &codes in messages {
-            teacher.receive(&CONFIG, codes, 40);
+            teacher.receive(FRESH_MS, codes, 40);
             for _ in 0..33 {
                 teacher.tick_ms();
             }
@@ -114,7 +90,7 @@ mod tests {
     }
 
     fn lesson(messages: &[Codes]) -> Result<Codes, NoLesson> {
-        after(messages).lesson(&CONFIG, HELD)
+        after(messages).lesson(FRESH_MS, true, false)
     }
 
     #[test]
@@ -153,19 +129,19 @@ mod tests {
         for _ in 73..120 {
             teacher.tick_ms();
         }
-        assert!(teacher.lesson(&CONFIG, HELD).is_ok());
+        assert!(teacher.lesson(FRESH_MS, true, false).is_ok());
         teacher.tick_ms();
-        assert_eq!(teacher.lesson(&CONFIG, HELD), Err(NoLesson::Late));
+        assert_eq!(teacher.lesson(FRESH_MS, true, false), Err(NoLesson::Late));
         for _ in 0..100_000 {
             teacher.tick_ms();
         }
-        assert_eq!(teacher.lesson(&CONFIG, HELD), Err(NoLesson::Late));
-        teacher.receive(&CONFIG, [Minus, Plus], 40);
-        assert_eq!(teacher.lesson(&CONFIG, HELD), Err(NoLesson::Absent));
+        assert_eq!(teacher.lesson(FRESH_MS, true, false), Err(NoLesson::Late));
+        teacher.receive(FRESH_MS, [Minus, Plus], 40);
+        assert_eq!(teacher.lesson(FRESH_MS, true, false), Err(NoLesson::Absent));
         let mut late = Teacher::default();
         for _ in 0..9 {
-            late.receive(&CONFIG, [Minus, Plus], 121);
+            late.receive(FRESH_MS, [Minus, Plus], 121);
         }
-        assert_eq!(late.lesson(&CONFIG, HELD), Err(NoLesson::Late));
+        assert_eq!(late.lesson(FRESH_MS, true, false), Err(NoLesson::Late));
     }
 }

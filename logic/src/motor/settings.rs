@@ -1,5 +1,3 @@
-//! Settings of the motor's current.
-
 use crate::setting::settings;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

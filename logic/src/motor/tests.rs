@@ -4,7 +4,6 @@ use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::motor::Duty;
 use tenax_hal_shim::words::Fault;
 
-/// A motor whose fingers and current are set by hand: 14-bit samples with noise of +-2.
 struct Bench {
     motor: Motor,
     config: MotorConfig,
@@ -12,7 +11,6 @@ struct Bench {
     cycle: u32,
     state: u32,
     opening_mv: f64,
-    /// mV at the pin and no noise: a sensor that is broken.
     current_pin_mv: Option<f64>,
     opening_pin_mv: Option<f64>,
     told: std::vec::Vec<(u32, EventKind)>,
@@ -81,7 +79,6 @@ impl Bench {
         drive
     }
 
-    /// Slow frames in which it was driven while this was asked for.
     fn driven(&mut self, asked: MotorDrive, turns: f64, cycles: u32) -> u32 {
         (0..cycles).map(|_| u32::from(self.cycle(asked, turns) != MotorDrive::Coast)).sum()
     }

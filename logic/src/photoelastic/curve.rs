@@ -1,20 +1,16 @@
-//! From the dc part to force: the intensity follows a sine squared (equation 9), so its phase is an arcsine
-//! of a root. Force over phase is a table: the paper's curve is not symmetric, and no formula of it is known.
+//! Force from the dc part: the intensity follows a sine squared (equation 9), so its phase is an arcsine of a
+//! root; force over phase is a table.
 
-/// From no load to the force at which the intensity is back at its first value.
 pub const HALF_TURN: i32 = 8_192;
 pub const PEAK: i32 = HALF_TURN / 2;
-/// Knots of the table besides no load.
 pub const KNOTS: usize = 8;
 const KNOT_PHASE: i32 = HALF_TURN / KNOTS as i32;
 pub const ONE: i32 = 1 << 20;
 
-/// Levels of light (dc) are means in 1/16 of a sample.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Curve {
     pub dark_q4: i32,
     pub bright_q4: i32,
-    /// Force at each eighth of half a turn, mN, without the first (no load). The fourth is the peak.
     pub force_mn: [i32; KNOTS],
 }
 
@@ -51,7 +47,6 @@ pub fn phase_of(part: i32) -> i32 {
     if part <= ONE / 2 { asin_of_root(part) } else { PEAK - asin_of_root(ONE - part) }
 }
 
-/// Up to a half, within 3 units of phase.
 fn asin_of_root(part: i32) -> i32 {
     // The root of a Q20 as Q15.
     let s = i64::from((u64::from(part.unsigned_abs()) << 10).isqrt() as u32);

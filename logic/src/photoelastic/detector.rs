@@ -8,8 +8,6 @@ use tenax_hal_shim::channel::frames;
 
 /// Time after an impact or a fast run of the motor: the load still changes, and the filters ring.
 const AFTER_NOISE: u32 = frames(160);
-
-/// Time for which a report may continue while the motor answers it: the strip still flickers.
 const ANSWERED: u32 = frames(50);
 
 #[derive(Clone, Copy, Debug, Default)]
@@ -42,7 +40,6 @@ impl Detector for PhotoelasticDetector {
 }
 
 impl PhotoelasticDetector {
-    /// Cold, since most hands have no head.
     #[cold]
     #[inline(never)]
     fn judge(&mut self, config: &HeadConfig, sensed: &Sensed<'_>) -> Said {
@@ -56,7 +53,7 @@ impl PhotoelasticDetector {
         if sensed.forces_are_new {
             self.level = head.level();
             self.rate_um_s = if slips { head.rate_um_s(config, &ALUMINIUM) } else { 0 };
-            self.health = if head.is_usable() { DetectorHealth::Working } else { DetectorHealth::Blind };
+            self.health = if head.is_usable { DetectorHealth::Working } else { DetectorHealth::Blind };
         }
         Said::slip(slips)
     }

@@ -1,6 +1,5 @@
-//! A photoelastic head in the place of PVDF film 12 (Dubey 2006): one optical channel for slip (ac) and
-//! normal force (dc). [`split`] and [`slip`] run every frame, [`curve`] and [`track`] every cycle, [`rate`]
-//! if asked.
+//! A photoelastic head in the place of PVDF film 12 (Dubey 2006): one optical channel for slip (ac, every
+//! frame) and normal force (dc, every slow frame).
 
 pub mod curve;
 mod detector;
@@ -34,8 +33,8 @@ pub const ALUMINIUM: RateFit = RateFit { constant: -16_736, amplitude: 896, freq
 #[derive(Clone, Debug, Default)]
 pub struct Head {
     health: SensorHealth,
-    is_usable: bool,
-    split: Split,
+    pub is_usable: bool,
+    pub split: Split,
     presence: Presence,
     tracker: Tracker,
 }
@@ -65,21 +64,12 @@ impl Head {
         self.tracker.step(&config.curve, level_q4, hints);
     }
 
-    pub const fn is_usable(&self) -> bool {
-        self.is_usable
-    }
-
     pub const fn vibrates(&self) -> bool {
-        self.presence.is_slip()
+        self.presence.slip
     }
 
-    /// Mean size of the ac part, samples (14 bits).
     pub const fn level(&self) -> i32 {
-        self.split.envelope() >> Q
-    }
-
-    pub const fn split(&self) -> &Split {
-        &self.split
+        self.split.envelope >> Q
     }
 
     pub const fn track(&self) -> Track {
@@ -90,23 +80,21 @@ impl Head {
         self.tracker.force()
     }
 
-    /// Size of the ac part (part of the span, Q20), period (1/16 of a frame) and force (mN). None while
-    /// nothing oscillates or the force is unknown.
+    /// Size of the ac part (of the span, Q20), period (1/16 of a frame) and force (mN), while it oscillates.
     pub fn swing(&self, config: &HeadConfig) -> Option<(i32, u16, i32)> {
         let period_q4 = self.split.period_q4();
         let force_mn = self.force()?.mn();
         let span = i64::from(config.curve.bright_q4 - config.curve.dark_q4).max(1);
-        let part = i64::from(self.split.envelope()) * 16 * i64::from(ONE) / (span << Q);
+        let part = i64::from(self.split.envelope) * 16 * i64::from(ONE) / (span << Q);
         (period_q4 > 0).then_some((part.min(i64::from(ONE)) as i32, period_q4, force_mn))
     }
 
-    /// 0 if it is unknown.
     pub fn rate_um_s(&self, config: &HeadConfig, fit: &RateFit) -> i32 {
         self.swing(config).map_or(0, |(part, period_q4, force_mn)| fit.rate_um_s(part, period_q4, force_mn))
     }
 
-    /// Forces in place of a lost force sensor. Fn is the least force that fits the light and the load the
-    /// most, so that neither a ceiling nor an empty hand is missed. Shear is 0 and the ratio None.
+    /// Forces in place of a lost force sensor: Fn is the least that fits the light and the load the most. Shear
+    /// is 0 and the ratio None.
     pub fn stand_in(&self) -> Option<Forces> {
         let Force { least_mn, most_mn } = self.force()?;
         Some(Forces { fn_mn: least_mn, fx_mn: 0, fy_mn: 0, ft_mn: 0, load_mn: most_mn, ratio_permille: None })

@@ -1,10 +1,10 @@
-//! Rate of slip from amplitude and frequency of the ac part: a fit of logarithms, calibrated with one
-//! material (`tenax calibrate photoelastic`). On another material it is off by a factor.
+//! Rate of slip from amplitude and frequency of the ac part: a fit of logarithms to one material. On another
+//! material it is off by a factor.
 
-use crate::emg::log2::{LEVEL_Q, level_of};
+use crate::emg::level::{self, LEVEL_Q};
 
-/// `log2 rate = a + b log2 amplitude + c log2 frequency + d log2 force` (a fit, no published law); factors
-/// are Q10. Amplitude as a part of the span (Q20), frequency in mHz, force in mN, rate in um/s.
+/// `log2 rate = a + b log2 amplitude + c log2 frequency + d log2 force` (no published law), factors Q10:
+/// part of the span (Q20), mHz, mN, um/s.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RateFit {
     pub constant: i32,
@@ -14,12 +14,10 @@ pub struct RateFit {
 }
 
 const RATE_MAX_UM_S: i32 = 20_000;
-/// Left shift of a number before its logarithm, which begins at 8000.
-const RAISED: u32 = 13;
 
 /// Q10, of 1 to 2^17.
 fn log2(number: i32) -> i32 {
-    level_of(number.clamp(1, 1 << 17) << RAISED) - ((RAISED as i32) << LEVEL_Q)
+    level::log2(number.clamp(1, 1 << 17) as u32)
 }
 
 /// `2^x`, x in Q10, rounded down; a parabola between powers, within 0.3 %.
@@ -35,15 +33,13 @@ fn exp2(x: i32) -> i32 {
 }
 
 impl RateFit {
-    /// log2, Q10, of amplitude (part of the span, Q20), frequency (mHz, of a period in 1/16 frames) and force
-    /// (mN).
+    /// log2, Q10, of amplitude (part of the span, Q20), period (1/16 frames, as mHz) and force (mN).
     pub fn features(amplitude_q20: i32, period_q4: u16, force_mn: i32) -> [i32; 3] {
         // 2000 frames a second in 1/16: 32 000 000 mHz over the period. A quarter of it has room.
         let quarter_mhz = 8_000_000 / i32::from(period_q4.max(1));
         [log2(amplitude_q20), log2(quarter_mhz) + (2 << LEVEL_Q), log2(force_mn)]
     }
 
-    /// 0 to 20 000 um/s.
     pub fn rate_um_s(&self, amplitude_q20: i32, period_q4: u16, force_mn: i32) -> i32 {
         let [amplitude, frequency, force] = Self::features(amplitude_q20, period_q4, force_mn).map(i64::from);
         let sum = amplitude * i64::from(self.amplitude)
@@ -69,19 +65,5 @@ mod tests {
             assert!((f64::from(exp2(x)) - exact).abs() < 0.005 * exact + 1.0, "{x}: {} {exact}", exp2(x));
         }
         assert_eq!((exp2(-1), exp2(i32::MAX), log2(i32::MIN)), (0, RATE_MAX_UM_S, 0));
-    }
-
-    #[test]
-    fn a_fit_is_what_it_says() {
-        // rate = 2 amplitude frequency / force.
-        let fit = RateFit {
-            constant: 1 << LEVEL_Q,
-            amplitude: 1 << LEVEL_Q,
-            frequency: 1 << LEVEL_Q,
-            force: -(1 << LEVEL_Q),
-        };
-        let rate = f64::from(fit.rate_um_s(64, 5_120, 1_000));
-        assert!((rate / (2.0 * 64.0 * 6_250.0 / 1_000.0) - 1.0).abs() < 0.03, "{rate}");
-        assert_eq!(fit.rate_um_s(i32::MAX, 0, i32::MIN), RATE_MAX_UM_S);
     }
 }

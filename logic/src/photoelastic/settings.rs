@@ -1,12 +1,9 @@
-//! Settings of the photoelastic head.
-
 use super::curve::Curve;
 use crate::setting::settings;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct HeadConfig {
     pub fitted: bool,
-    /// Threshold of the ac envelope, samples (14 bits).
     pub slip: u16,
     pub curve: Curve,
 }

@@ -1,19 +1,16 @@
-//! Whether the ac part is slip: large for long enough, and swinging. An impact rings and dies away; a force
-//! that changes swings once.
+//! The ac part is slip if it is large for long enough and swings: an impact dies away, a force swings once.
 
 use super::split::{Q, Split};
 use tenax_hal_shim::channel::frames;
 
-/// Longer than an impact rings.
 const LASTS: u32 = frames(45);
-/// Consecutive oscillations that slip needs.
 const SWINGS: u16 = 3;
 
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Presence {
     large: u32,
     before: u16,
-    slip: bool,
+    pub slip: bool,
 }
 
 impl Presence {
@@ -21,18 +18,14 @@ impl Presence {
     #[inline]
     pub fn process(&mut self, on: u16, split: &Split) {
         let on = (i32::from(on) << Q) >> u32::from(self.slip);
-        let is_large = split.envelope() > on;
+        let is_large = split.envelope > on;
         if !is_large {
-            (self.large, self.before, self.slip) = (0, split.swings(), false);
+            (self.large, self.before, self.slip) = (0, split.swings, false);
             return;
         }
         self.large = self.large.saturating_add(1);
-        self.before = self.before.min(split.swings());
-        self.slip |= self.large >= LASTS && split.swings() - self.before >= SWINGS;
-    }
-
-    pub const fn is_slip(&self) -> bool {
-        self.slip
+        self.before = self.before.min(split.swings);
+        self.slip |= self.large >= LASTS && split.swings - self.before >= SWINGS;
     }
 }
 
@@ -41,7 +34,6 @@ mod tests {
     use super::*;
     use std::f64::consts::TAU;
 
-    /// Frames from which on it is said, if at all, of a tone that dies away in `decay` frames.
     fn said(hz: f64, size: f64, decay: f64) -> Option<u32> {
         let (mut split, mut presence) = (Split::default(), Presence::default());
         (0..2_000).find(|&n| {
@@ -49,7 +41,7 @@ mod tests {
             let tone = size * (-t / decay).exp() * (TAU * hz * t / 2e3).sin();
             split.process((6_000.0 + tone).round() as u16);
             presence.process(10, &split);
-            presence.is_slip()
+            presence.slip
         })
     }
 
@@ -73,7 +65,7 @@ mod tests {
                 let ramp = ((f64::from(n) - 1_000.0) / frames).clamp(0.0, 1.0);
                 split.process((2_000.0 + 8_000.0 * ramp + noise) as u16);
                 presence.process(10, &split);
-                assert!(!presence.is_slip(), "{frames}: {n}");
+                assert!(!presence.slip, "{frames}: {n}");
             }
         }
     }

@@ -1,23 +1,17 @@
-//! Splits the head's signal: ac shows slip, dc normal force (section 3). Two high-passes give ac, since one
-//! would pass the slope of an evenly changing force; dc is the mean of a cycle's 25 samples. Samples around
-//! mid-scale in Q14; every state stays below 2^29, so no difference overflows.
+//! Splits the head's signal: ac, by two high-passes, shows slip; dc, the mean of a slow frame, normal force
+//! (section 3). Samples around mid-scale in Q14; every state stays below 2^29.
 
 use tenax_hal_shim::channel::FRAMES_PER_SLOW_FRAME;
 
 use crate::low_pass::LowPass;
 
-/// Lower edge of the slip band, twice.
 pub const BAND_LOW_HZ: u32 = 20;
 pub const BAND_HIGH_HZ: u32 = 250;
 pub const ENVELOPE_HZ: u32 = 12;
 pub const Q: u32 = 14;
-
 const MIDDLE: i32 = 1 << 13;
-/// A swing that turns back within this much of zero is noise: two samples.
 const NOISE: i32 = 2 << Q;
-/// Frames without a swing after which the count begins anew: 8 Hz is the slowest.
 const PERIOD_MAX: u16 = 250;
-
 static HIGH_PASS: LowPass = LowPass::of(BAND_LOW_HZ as f64);
 static LOW_PASS: LowPass = LowPass::of(BAND_HIGH_HZ as f64);
 static ENVELOPE: LowPass = LowPass::of(ENVELOPE_HZ as f64);
@@ -29,14 +23,14 @@ pub struct Split {
     low: i32,
     envelope_state: i32,
     ac: i32,
-    envelope: i32,
+    /// Mean size of the ac part, Q14 samples.
+    pub envelope: i32,
     sum: u32,
     count: u32,
     is_above: bool,
     since: u16,
-    /// Duration of one swing, 1/16 of a frame.
     period_q4: u16,
-    swings: u16,
+    pub swings: u16,
 }
 
 impl Split {
@@ -95,16 +89,6 @@ impl Split {
         whole.then(|| ((sum << 4) / count) as i32)
     }
 
-    /// Mean size of the ac part, Q14 samples.
-    pub const fn envelope(&self) -> i32 {
-        self.envelope
-    }
-
-    pub const fn swings(&self) -> u16 {
-        self.swings
-    }
-
-    /// 1/16 of a frame; 0 if it is not known.
     pub const fn period_q4(&self) -> u16 {
         if self.swings < 2 { 0 } else { self.period_q4 }
     }
@@ -163,7 +147,6 @@ mod tests {
 
     #[test]
     fn both_parts_are_those_of_f64_within_2_lsb() {
-        let mut worst = 0.0_f64;
         for (name, samples) in signals() {
             let (mut split, mut float) = (Split::default(), Float::default());
             for (n, cycle) in samples.chunks_exact(25).enumerate() {
@@ -171,17 +154,14 @@ mod tests {
                     split.process(sample);
                     let (ac, envelope) = float.process(sample);
                     let lsb = |fixed: i32| f64::from(fixed) / f64::from(1 << Q);
-                    let error = (lsb(split.ac) - ac).abs().max((lsb(split.envelope()) - envelope).abs());
-                    worst = worst.max(error);
+                    let error = (lsb(split.ac) - ac).abs().max((lsb(split.envelope) - envelope).abs());
                     assert!(error < 2.0, "{name}, cycle {n}: {error}");
                 }
                 let mean = cycle.iter().map(|&sample| f64::from(sample)).sum::<f64>() / 25.0;
                 let error = (f64::from(split.take_mean_q4().unwrap()) / 16.0 - mean).abs();
-                worst = worst.max(error);
                 assert!(error < 2.0, "{name}, cycle {n}: dc {error}");
             }
         }
-        std::println!("worst error {worst} LSB of 14 bits");
     }
 
     #[test]
@@ -192,13 +172,13 @@ mod tests {
                 split.process((8_190.0 + 300.0 * (TAU * hz * f64::from(n) / 2e3).sin()) as u16);
             }
             let measured = 16.0 * 2e3 / f64::from(split.period_q4());
-            assert!((measured / hz - 1.0).abs() < 0.05 && split.swings() > 10, "{measured} Hz for {hz} Hz");
+            assert!((measured / hz - 1.0).abs() < 0.05 && split.swings > 10, "{measured} Hz for {hz} Hz");
         }
         let mut split = Split::default();
         for n in 0..2_000 {
             split.process(1_000 + 4 * n);
         }
-        assert!(split.envelope() < 2 << Q, "{}", split.envelope() >> Q);
+        assert!(split.envelope < 2 << Q, "{}", split.envelope >> Q);
         assert_eq!(split.period_q4(), 0);
     }
 

@@ -1,13 +1,7 @@
-//! The range of forces that fits the light for any shear. With a shear of q times the force and `s^2 = 1 + 4
-//! q^2` the light is `sin^2(s phase) / s^2` of the peak's (Dubey 2006, equations 6 to 9), q at most
-//! [`SHEAR_MAX_PERMILLE`].
-//!
-//! - While the light stays below [`FOLD`] the branch is still the same, and the force lies between that of no
-//!   and of the most shear.
-//! - After brighter light the force is between the least that explains it (below the fold) and the most
-//!   (above it), without shear.
-//!
-//! The branch is known again in an open hand, or where another sensor's force agrees with one branch only.
+//! Range of forces that fits the light for any shear. With a shear of q times the force and `s^2 = 1 + 4 q^2`
+//! the light is `sin^2(s phase) / s^2` of the peak's (Dubey 2006, equations 6 to 9), q at most
+//! [`SHEAR_MAX_PERMILLE`]. While the light stays below [`FOLD`] the branch is still the same; after brighter
+//! light the range is that of both. The branch is known again in an open hand, or by another sensor.
 
 use super::curve::{Curve, HALF_TURN, ONE, phase_of};
 
@@ -35,7 +29,6 @@ pub enum Track {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Force {
-    /// mN.
     pub least_mn: i32,
     pub most_mn: i32,
 }
@@ -45,7 +38,6 @@ impl Force {
         (self.least_mn + self.most_mn) / 2
     }
 
-    /// Half the width of the range, mN.
     pub const fn uncertainty_mn(&self) -> i32 {
         self.most_mn - self.mn()
     }
@@ -59,38 +51,30 @@ pub struct Hints {
 
 /// Largest shear, of the force: friction on the strip, with room (`docs/photoelastic.md`).
 pub const SHEAR_MAX_PERMILLE: i32 = 500;
-/// `s^2` and `s` at that shear; the second in 1/1024.
 const STRETCH_SQUARED: i32 = 1 + 4 * SHEAR_MAX_PERMILLE * SHEAR_MAX_PERMILLE / 1_000_000;
 const STRETCH_Q10: i32 = 1_448;
-/// Part of the span below which the light cannot have reached the fold with any shear: 1 / s^2, less drift
-/// and noise.
+/// Part of the span below which the light cannot have reached the fold: 1 / s^2, less drift and noise.
 pub const FOLD: i32 = ONE / STRETCH_SQUARED - ONE / 25;
 /// Error of the peak's level, as a part of the span: the source drifts by 2 % and on.
 const BRIGHT_OFF: i32 = ONE / 40;
-/// Noise of a mean and drift of the dark level, as a part of the span: 0.4 %.
 const NOISE: i32 = ONE / 250;
 /// Table, frozen birefringence and delay at 6 N/s, mN.
 const OFF_MN: i32 = 60;
 /// Part of the span below which there is no load, or a force at the curve's end.
 const DARK: i32 = ONE / 50;
-/// Consecutive slow frames without a reading before the force is unknown.
 const MISSED_MAX: u8 = 4;
-/// Forces that another sensor can tell apart, mN.
 const APART_MN: i32 = 600;
 
 #[derive(Clone, Debug, Default)]
 pub struct Tracker {
     today: Option<Curve>,
-    /// Part of the span, None while there is no reading.
     part: Option<i32>,
     known: Option<Branch>,
-    /// The force may have passed the curve's end since the branch was known.
     ended: bool,
     missed: u8,
 }
 
 impl Tracker {
-    /// Mean of a cycle, 1/16 of a sample.
     pub fn step(&mut self, calibrated: &Curve, level_q4: Option<i32>, hints: Hints) {
         let Some(level_q4) = level_q4 else {
             self.missed = self.missed.saturating_add(1);

@@ -1,5 +1,3 @@
-//! The force sensor's quadrants: each reading as it comes, and the forces when all four have.
-
 use tenax_hal_shim::channel::{FRAMES_PER_SLOW_FRAME, FSR, FSR_COUNT};
 use tenax_hal_shim::words::{Fault, Reason};
 

@@ -1,17 +1,14 @@
-//! Watch of the analogue switches' select lines. Inputs [`HIGH_SELECT`] and [`LOW_SELECT`] of switch B are at
-//! the supply and at ground: with any line cut, stuck or shorted this pair is missing in its place, or seen
-//! in another one.
+//! Watch of the analogue switches' select lines: the supply at [`HIGH_SELECT`] and ground at [`LOW_SELECT`] are
+//! seen in another place if a line is cut, stuck or shorted.
 
 use tenax_hal_shim::channel::{HIGH_SELECT, LOW_SELECT, MYO_SELECT, SLOW_HZ, SWITCH_INPUTS, sample_from_mv};
 
-/// Least sample at the supply, and most at ground: beyond the limits of every sensor.
 const HIGH: u16 = sample_from_mv(3_270);
 const LOW: u16 = sample_from_mv(40);
 const PLACE: usize = HIGH_SELECT as usize / 2;
 const _: () =
     assert!(LOW_SELECT == HIGH_SELECT + 1 && HIGH_SELECT.is_multiple_of(2) && LOW_SELECT < SWITCH_INPUTS);
 
-/// Right slow frames after which lost lines are believed again, 1 s.
 const BACK_AFTER: u8 = SLOW_HZ as u8;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -27,9 +24,7 @@ enum Pair {
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct SelectLines {
     pair: Pair,
-    /// Right slow frames until the lines are believed; 0: they are.
     until_back: u8,
-    /// Mask of the hidden bits of a sample: none, or all.
     hidden: u16,
     hidden_muscle: u16,
 }

@@ -5,9 +5,7 @@ use tenax_hal_shim::words::Kept;
 use super::payload::ZeroBytes;
 use tenax_hal_shim::channel::frames;
 
-/// Least time between two saves of settings or zero.
 const CHANGED_FRAMES: u32 = frames(3_000);
-/// Least time between two automatic saves of the network's weights.
 const LEARNED_FRAMES: u32 = frames(60_000);
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,7 +14,6 @@ pub struct Now {
     pub calibrated: u32,
     pub zero: ZeroBytes,
     pub updates: u32,
-    /// Only a resting hand without a lesson saves the network without a command.
     pub at_rest: bool,
     pub asked: bool,
 }
@@ -27,7 +24,6 @@ pub struct Keeper {
     calibrated: u32,
     zero: ZeroBytes,
     updates: u32,
-    /// Frames since each kind was saved, saturating.
     since: [u32; Kept::ALL.len()],
 }
 

@@ -8,13 +8,9 @@ use crate::config::Config;
 use crate::emg::model::{EmgModel, MODEL_WORDS};
 use crate::force::sensor::ZERO_LIMIT_UV;
 
-/// Bits of a settings word that hold the value; the setting's number is above them.
 const VALUE_BITS: u32 = 24;
-
 pub type SettingsBytes = Vec<u8, { 4 * SettingId::ALL.len() }>;
-/// A word for each quadrant, uV above rest.
 pub type ZeroBytes = [u8; 4 * FSR_COUNT];
-
 pub type EmgBytes = [u8; 4 * MODEL_WORDS];
 
 pub fn of_emg(model: &EmgModel) -> EmgBytes {
@@ -52,7 +48,6 @@ pub fn of_zero(zero_uv: &[i32; FSR_COUNT]) -> ZeroBytes {
     bytes_of(*zero_uv)
 }
 
-/// None if one is no offset of a working sensor.
 pub fn zero(bytes: &[u8]) -> Option<[i32; FSR_COUNT]> {
     let zero_uv = words_of::<FSR_COUNT>(bytes)?;
     let allowed = zero_uv.iter().all(|uv| uv.unsigned_abs() <= ZERO_LIMIT_UV.unsigned_abs());
@@ -115,21 +110,14 @@ mod tests {
     }
 
     #[test]
-    fn a_calibration_comes_back_or_is_refused() {
+    fn a_calibration_and_a_zero_come_back_or_are_refused() {
         let model = EmgModel::of_uv([50_000; 2], [400_000, 70_000], [80_000, 600_000]).unwrap();
         let bytes = of_emg(&model);
         assert_eq!(emg(&bytes), Some(model));
-        assert_eq!(emg(&bytes[4..]), None);
-        assert_eq!(emg(&[0; 40]), None);
-        assert_eq!(emg(&[0xff; 40]), None);
-    }
-
-    #[test]
-    fn a_zero_comes_back_or_is_refused() {
+        assert_eq!([&bytes[4..], &[0; 40], &[0xff; 40]].map(emg), [None; 3]);
         let offsets = [0, -60_000, 60_000, -1];
         assert_eq!(zero(&of_zero(&offsets)), Some(offsets));
-        assert_eq!(zero(&of_zero(&[0, 0, 60_001, 0])), None);
-        assert_eq!(zero(&of_zero(&[i32::MIN; 4])), None);
+        assert_eq!([[0, 0, 60_001, 0], [i32::MIN; 4]].map(|uv| zero(&of_zero(&uv))), [None; 2]);
         assert_eq!(zero(&[0; 12]), None);
     }
 }

@@ -17,12 +17,9 @@ use crate::hebbian::{Learned, SNAPSHOT_LENGTH};
 use crate::store::payload::{EmgBytes, SettingsBytes, ZeroBytes};
 
 pub const OVERHEAD_WORDS: usize = 4;
-
 /// All bits 0, so that none is half programmed; it is no tag.
 pub(super) const MARK: u32 = 0;
-
 const COMMIT: u32 = 0x3C5A_96E1;
-
 pub const PAYLOAD_BYTES: usize = SNAPSHOT_LENGTH;
 
 #[derive(Clone, Debug)]
@@ -70,7 +67,6 @@ pub(super) struct Tag {
 }
 
 impl Tag {
-    /// None if the payload is too long.
     pub fn new(kind: u8, words: usize) -> Option<Self> {
         Some(Self { kind, words: u8::try_from(words).ok()? })
     }
@@ -89,8 +85,7 @@ impl Tag {
         (tag.to_word() == word).then_some(tag)
     }
 
-    /// The word's own tag; both candidates if one bit contradicts the complement; none if more do. A bit that
-    /// is half programmed may read as 0 or 1.
+    /// The word's own tag; both candidates if one bit contradicts the complement (half programmed); else none.
     pub fn read_from(word: u32) -> impl Iterator<Item = Self> {
         let [kind, words, not_kind, not_words] = word.to_le_bytes();
         let (read, complement) = (Self { kind, words }, Self { kind: !not_kind, words: !not_words });
@@ -119,30 +114,18 @@ impl Tag {
 
 /// Dropped before its end, the record does not count.
 pub struct Saving<'a> {
-    sector: Sector,
-    at: usize,
-    tag: Tag,
-    sequence: u32,
-    payload: &'a [[u8; 4]],
-    digest: Digest<'static, u32>,
-    step: usize,
-    mark: Option<usize>,
+    pub(super) sector: Sector,
+    pub(super) at: usize,
+    pub(super) tag: Tag,
+    pub(super) sequence: u32,
+    pub(super) payload: &'a [[u8; 4]],
+    pub(super) digest: Digest<'static, u32>,
+    pub(super) step: usize,
+    pub(super) mark: Option<usize>,
 }
 
-impl<'a> Saving<'a> {
-    pub(super) fn new(
-        sector: Sector,
-        at: usize,
-        tag: Tag,
-        sequence: u32,
-        payload: &'a [[u8; 4]],
-        mark: Option<usize>,
-    ) -> Self {
-        Self { sector, at, tag, sequence, payload, digest: CRC.digest(), step: 0, mark }
-    }
-
-    /// Programs the next word; true when it was the last one, and the record counts. After a failure it never
-    /// will.
+impl Saving<'_> {
+    /// Programs the next word; true when it was the last one. After a failure it never counts.
     pub fn step(&mut self, area: &mut impl FlashArea) -> Result<bool, FlashFailed> {
         if let Some(place) = self.mark.take() {
             super::program(area, self.sector, place, MARK)?;
@@ -162,11 +145,5 @@ impl<'a> Saving<'a> {
         super::program(area, self.sector, place, word)?;
         self.step += 1;
         Ok(self.step == self.tag.record_words())
-    }
-}
-
-impl core::fmt::Debug for Saving<'_> {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.debug_struct("Saving").field("tag", &self.tag).field("step", &self.step).finish_non_exhaustive()
     }
 }

@@ -1,5 +1,4 @@
-//! A sector: opening words (magic, generation, CRC-32 of both; programmed last when it is taken into use),
-//! then records, then blank words.
+//! A sector: opening words (magic, generation, CRC-32 of both), then records, then blank words.
 
 use tenax_hal_shim::flash::{BLANK, FlashArea, FlashFailed, Sector};
 use tenax_hal_shim::words::Kept;
@@ -8,7 +7,6 @@ use super::record::{self, Tag};
 use crate::checksum::CRC;
 
 pub const OPENING_WORDS: usize = 3;
-
 const MAGIC: u32 = 0x7E4A_0001;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,7 +23,6 @@ impl Entry {
         Tag { kind: record::number(self.kept), words: self.words }
     }
 
-    /// None if `buffer` is shorter.
     pub fn read<'a>(&self, area: &impl FlashArea, buffer: &'a mut [u8]) -> Option<&'a [u8]> {
         let payload = buffer.get_mut(..4 * usize::from(self.words))?;
         let (slots, _) = payload.as_chunks_mut::<4>();
@@ -39,10 +36,8 @@ impl Entry {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Survey {
     pub sector: Sector,
-    /// None if its opening words are not whole.
     pub generation: Option<u32>,
     pub newest: [Option<Entry>; Kept::ALL.len()],
-    /// A damaged or unfinished record follows the newest whole one, by kind.
     pub damaged: [bool; Kept::ALL.len()],
     pub last_sequence: u32,
     pub end: usize,
@@ -66,8 +61,8 @@ impl Survey {
         survey
     }
 
-    /// Gives where the next record may begin. Only a record that checks out is skipped by its length: a half
-    /// programmed tag may name any length, and another one each time it is read.
+    /// Place of the next record. Only a record that checks out is skipped by its length: a half programmed tag may
+    /// name any.
     fn look_at(&mut self, area: &impl FlashArea, at: usize) -> usize {
         let word = area.read(self.sector, at);
         if word == BLANK {
@@ -98,8 +93,7 @@ impl Survey {
         self.last_sequence = self.last_sequence.max(entry.sequence);
     }
 
-    /// Records are appended to the sector of higher rank. Equal sequence numbers are a copy and its original;
-    /// a finished copy has a later generation.
+    /// Records are appended to the sector of higher rank; a finished copy has a later generation.
     pub fn rank(&self) -> (u32, u32) {
         (self.last_sequence, self.generation.unwrap_or(0))
     }

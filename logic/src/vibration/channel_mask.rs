@@ -1,28 +1,20 @@
-//! Masks a PVDF channel that alone reports vibration again and again: hum, a bad contact or a cracked film.
-//! It may close the hand once, and is masked until it has been quiet for a while.
+//! Masks a PVDF channel that alone reports vibration again and again (hum, bad contact) until it is quiet.
 
 use tenax_hal_shim::channel::{PVDF_COUNT, frames};
 
-/// Longest loudness alone before a channel is masked.
 const ALONE_FRAMES: u32 = frames(150);
-/// Silence after which a masked channel is believed again.
 const QUIET_FRAMES: u32 = frames(10_000);
 const WEIGHT: u32 = 8;
 
 #[derive(Clone, Debug, Default)]
 pub struct ChannelMask {
-    masked: u16,
+    pub masked: u16,
     suspect: u8,
     alone: u32,
     quiet: [u32; PVDF_COUNT],
 }
 
 impl ChannelMask {
-    /// One bit each, film 1 lowest.
-    pub const fn masked(&self) -> u16 {
-        self.masked
-    }
-
     pub const fn is_masked(&self, channel: usize) -> bool {
         self.masked >> channel & 1 != 0
     }
@@ -32,7 +24,6 @@ impl ChannelMask {
         self.alone = self.alone.saturating_sub(1);
     }
 
-    /// `on`: threshold, Q16 samples.
     #[inline(never)]
     pub fn count_loud(&mut self, envelopes: &[i32; PVDF_COUNT], on: i32) {
         let mut above = envelopes.iter().enumerate().filter(|(_, own)| **own > on / 4);
@@ -70,7 +61,7 @@ mod tests {
 
     fn after(mask: &mut ChannelMask, frames: u32, envelopes: [i32; PVDF_COUNT]) -> u16 {
         (0..frames).for_each(|_| mask.count_loud(&envelopes, ON));
-        mask.masked()
+        mask.masked
     }
 
     #[test]

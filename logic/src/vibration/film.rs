@@ -1,6 +1,5 @@
-//! Conditioning of one film: less the mains' [`hum`](super::hum), high-pass, low-pass, rectifier (the sign of
-//! a film means nothing: Tada 2006, section 2), second low-pass. Samples around mid-scale in Q16; the filters
-//! round away at most 0.0006 of a sample of any envelope.
+//! Conditioning of one film: less [`hum`](super::hum), high-pass, low-pass, rectifier (a film's sign means
+//! nothing: Tada 2006, section 2), low-pass; Q16 around mid-scale, off by at most 0.0006 of a sample.
 
 use super::hum::{Mains, Turn, Weights};
 use crate::low_pass::LowPass;
@@ -8,14 +7,11 @@ use crate::low_pass::LowPass;
 const BAND_LOW_HZ: u32 = 20;
 const BAND_HIGH_HZ: u32 = 150;
 const ENVELOPE_US: u32 = 8_000;
-
 pub(crate) const Q: u32 = 16;
 const MIDDLE: i32 = 1 << 13;
-
 pub(super) static ENVELOPE: LowPass = LowPass::of(1e6 / (2.0 * core::f64::consts::PI * ENVELOPE_US as f64));
 
-/// Kept in memory: of a constant the compiler makes a product of 64 bits, in four instructions instead of
-/// one.
+/// Kept in memory: of a constant the compiler makes a product of 64 bits.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Band {
     low: LowPass,
@@ -37,7 +33,6 @@ pub struct Film {
     primed: bool,
 }
 
-/// Q16 samples (14 bits).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Levels {
     pub envelope: i32,
@@ -45,7 +40,6 @@ pub struct Levels {
 }
 
 impl Film {
-    /// Q16 samples, also of a masked film.
     pub const fn level(&self) -> i32 {
         self.envelope
     }

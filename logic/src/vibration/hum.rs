@@ -1,19 +1,13 @@
-//! Mains hum, taken off each PVDF film before its filters. One oscillator is shared; each film has a weight
-//! of its cosine and sine, and adapts (LMS) 83 times a second by the error in its band. The oscillator
-//! follows the mains' frequency by the votes of the weights that turn. Errors are clipped, and nothing adapts
-//! while the films are loud.
-//!
-//! Fixed point: the oscillator is the coupled form, amplitude 2^29; a weight has 19 fraction bits, so the
-//! upper word of their product is hum in Q16.
+//! Mains hum, taken off each PVDF film before its filters. One oscillator (coupled form, amplitude 2^29) is
+//! shared; each film has weights of its cosine and sine (Q19) and adapts (LMS) 83 times a second by the error in
+//! its band. The oscillator follows the frequency by the votes of weights that turn.
 
 use tenax_hal_shim::channel::{FRAME_HZ, PVDF_COUNT};
 
 const AMPLITUDE: i32 = 1 << 29;
-/// Largest weight, Q19: 2048 samples.
 const WEIGHT_MAX: i32 = 1 << 30;
 /// Largest error that can be hum's alone, Q16: 64 samples.
 const ERROR_MAX: i32 = 64 << 16;
-/// Ticks between two films that adapt.
 const EVERY: usize = 2;
 /// Four times the upper word of error times oscillator is 1/16 of the error.
 const RATE: i32 = 4;
@@ -22,12 +16,9 @@ const PER_HZ: f64 = 2.0 * core::f64::consts::PI / FRAME_HZ as f64 * 4_294_967_29
 /// Mains, Hz, and the oscillator's largest distance from it.
 const NOMINAL_HZ: [f64; 2] = [50.0, 60.0];
 const OFF_HZ: f64 = 1.0;
-/// Slowest and fastest step at either mains.
 const WITHIN: [[i32; 2]; 2] = [within(NOMINAL_HZ[0]), within(NOMINAL_HZ[1])];
-/// Step of the frequency in a vote: 0.25 Hz in a second of votes that agree.
 const VOTE: i32 = (0.25 * EVERY as f64 / FRAME_HZ as f64 * PER_HZ) as i32;
 
-/// Q19 samples.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Weights {
     cosine: i32,
@@ -41,7 +32,6 @@ pub struct Turn {
 }
 
 impl Weights {
-    /// Q16 samples.
     #[inline]
     pub const fn heard(self, now: Turn) -> i32 {
         high(self.cosine, now.cosine).wrapping_add(high(self.sine, now.sine))
@@ -51,7 +41,6 @@ impl Weights {
 #[derive(Clone, Debug)]
 pub struct Mains {
     now: Turn,
-    /// `2 sin(pi f / fs)`, Q32.
     step: i32,
     ticks: u8,
 }
@@ -62,7 +51,6 @@ impl Default for Mains {
     }
 }
 
-/// `2 sin(x / 2)` of the angle x in a tick, by its series: within 1e-6.
 const fn step(hz: f64) -> i32 {
     let x = 2.0 * core::f64::consts::PI * hz / FRAME_HZ as f64;
     ((x - x * x * x / 24.0) * 4_294_967_296.0) as i32
@@ -102,7 +90,6 @@ impl Mains {
         0
     }
 
-    /// `error`: band signal that the weights do not explain, Q16 samples.
     #[inline]
     pub fn adapt(&mut self, mains_60_hz: bool, film: &mut Weights, error: i32) {
         let [slowest, fastest] = WITHIN[usize::from(mains_60_hz)];

@@ -1,7 +1,5 @@
-//! S1: slip from the vibration of the PVDF films (Prosthesis, sections 4 and 5). The slip band is 20 to 150
-//! Hz: real onsets have 83 to 94 % of their energy below 100 Hz and 1 to 3 % above 200 Hz. An impact rings
-//! above the band and is over soon, so S1 needs a loud band with a quieter sound above it, or a sound that
-//! stays.
+//! S1: slip from the vibration of the PVDF films, 20 to 150 Hz (Prosthesis, sections 4 and 5). An impact rings
+//! above the band and is over soon, so S1 needs a loud band with a quieter sound above it, or one that stays.
 
 pub mod channel_mask;
 pub mod detector;
@@ -23,28 +21,24 @@ use crate::vibration::settings::VibrationConfig;
 
 /// Frames for which a loud vibration must ring to be an impact; a sliding object rings for single ticks.
 const IMPACT_RINGS: u32 = 12;
-/// A peak of the envelope is forgotten over `2^PEAK_SHIFT` frames, 0.13 s.
 const PEAK_SHIFT: u32 = 8;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Trust {
     #[default]
     Full,
-    /// It may be freezing: its last jump must not count as slip.
     Doubtful,
     None,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Vibration {
-    /// Samples (14 bits).
     pub level: u16,
     /// Above the threshold, and no impact.
     pub s1: bool,
     /// Rings above the slip band, and not for longer than an impact.
     pub impact: bool,
     pub slides: bool,
-    /// Films that were loud alone, a bit each.
     pub masked: u16,
 }
 
@@ -78,7 +72,7 @@ impl VibrationDetector {
         trusts: Option<&[Trust; PVDF_COUNT]>,
     ) -> Vibration {
         let mains = self.mains.turn();
-        if self.mask.masked() != 0 {
+        if self.mask.masked != 0 {
             let trusts = self.with_masks(config, trusts);
             let loudest = self.process_each(samples, &trusts, mains);
             return self.judge(config, loudest);
@@ -192,11 +186,10 @@ impl VibrationDetector {
             s1: self.s1,
             impact: rings && self.ringing_frames < config.impact_frames,
             slides: self.slides,
-            masked: self.mask.masked(),
+            masked: self.mask.masked,
         }
     }
 
-    /// Call it once a slow frame.
     pub fn slow(&mut self, hand: &Hand) {
         self.slides = self.sliding.step(&self.envelopes, self.above, hand);
     }

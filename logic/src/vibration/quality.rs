@@ -1,5 +1,4 @@
-//! The PVDF films: which of their samples are valid, suspect or none. All twelve are tested at once, two in a
-//! word; only if one is not plain is each looked at by itself.
+//! Validity of the PVDF films' samples. All twelve are tested at once, two in a word.
 
 use tenax_hal_shim::channel::{CHANNELS, FRAME_HZ, PVDF, PVDF_COUNT, SAMPLE_MAX, SLOW_HZ, sample_from_mv};
 use tenax_hal_shim::front_end::PVDF_CUT_MV;
@@ -8,20 +7,14 @@ use tenax_hal_shim::words::Reason;
 use super::Trust;
 use crate::health::{Change, Limits, SensorHealth};
 
-/// Equal samples in a row that a live film, with 30 samples rms of noise, hardly ever gives: it is suspect
-/// before the jump of a freeze has come through its filters.
+/// Equal samples in a row that a live film hardly ever gives; the filters have not passed the freeze yet.
 const DOUBTED_AFTER: u32 = 2;
 
-/// Output of an amplifier without its film, samples: resistors, offset and the film's rest move it by less
-/// than 40 mV.
+/// Output of an amplifier without its film, samples, within 40 mV.
 const CUT: core::ops::RangeInclusive<u16> =
     sample_from_mv(PVDF_CUT_MV - 40)..=sample_from_mv(PVDF_CUT_MV + 40);
-/// Slow frames of a cut wire, 0.5 s. Only vibration of a multiple of [`SLOW_HZ`], within 1 Hz, is always seen
-/// in one place.
 const CUT_AFTER: u8 = (SLOW_HZ / 2) as u8;
-
 const LIMITS: Limits = Limits::of(&CHANNELS[PVDF], FRAME_HZ);
-
 /// Unused top bit of a sample, so that one subtraction compares two samples in a word.
 const SPARE: u16 = 1 << 15;
 const _: () = assert!(SAMPLE_MAX < SPARE && LIMITS.high < SPARE);
@@ -79,7 +72,7 @@ impl PvdfQuality {
         for (n, (((health, last), &sample), trust)) in films.enumerate() {
             let last = core::mem::replace(last, sample);
             let in_range = (LIMITS.low..=LIMITS.high).contains(&sample);
-            if in_range && sample != last && !health.is_lost() {
+            if in_range && sample != last && health.lost.is_none() {
                 health.was_plain(sample);
                 continue;
             }
@@ -92,11 +85,11 @@ impl PvdfQuality {
             }
             *trust = match reading {
                 Err(_) => Trust::None,
-                Ok(_) if health.same() >= DOUBTED_AFTER => Trust::Doubtful,
+                Ok(_) if health.same >= DOUBTED_AFTER => Trust::Doubtful,
                 Ok(_) => Trust::Full,
             };
             all_believed &= *trust == Trust::Full;
-            self.any_lost |= health.is_lost();
+            self.any_lost |= health.lost.is_some();
         }
         (!all_believed).then_some(trusts)
     }
@@ -131,35 +124,29 @@ const fn pair(samples: &[u16; 2]) -> u32 {
 mod tests {
     use super::*;
 
-    #[derive(Default)]
-    struct OneByOne([SensorHealth; PVDF_COUNT]);
+    type Verdict = ([Trust; PVDF_COUNT], std::vec::Vec<(usize, Change)>);
 
-    impl OneByOne {
-        fn check(
-            &mut self,
-            samples: &[u16; PVDF_COUNT],
-        ) -> ([Trust; PVDF_COUNT], std::vec::Vec<(usize, Change)>) {
-            let mut changes = std::vec::Vec::new();
-            let trusts = core::array::from_fn(|n| {
-                let (reading, change) = self.0[n].take(&LIMITS, samples[n]);
-                changes.extend(change.map(|change| (n, change)));
-                match reading {
-                    Err(_) => Trust::None,
-                    Ok(_) if self.0[n].same() >= DOUBTED_AFTER => Trust::Doubtful,
-                    Ok(_) => Trust::Full,
-                }
-            });
-            (trusts, changes)
-        }
+    fn one_by_one(films: &mut [SensorHealth; PVDF_COUNT], samples: &[u16; PVDF_COUNT]) -> Verdict {
+        let mut changes = std::vec::Vec::new();
+        let trusts = core::array::from_fn(|n| {
+            let (reading, change) = films[n].take(&LIMITS, samples[n]);
+            changes.extend(change.map(|change| (n, change)));
+            match reading {
+                Err(_) => Trust::None,
+                Ok(_) if films[n].same >= DOUBTED_AFTER => Trust::Doubtful,
+                Ok(_) => Trust::Full,
+            }
+        });
+        (trusts, changes)
     }
 
     fn agree(frames: impl Iterator<Item = [u16; PVDF_COUNT]>) {
-        let (mut films, mut one_by_one) = (PvdfQuality::default(), OneByOne::default());
+        let (mut films, mut each) = (PvdfQuality::default(), Default::default());
         for (n, samples) in frames.enumerate() {
             let mut changes = std::vec::Vec::new();
             let trusts = films.check(&samples, |film, change| changes.push((film, change)));
             let trusts = trusts.unwrap_or([Trust::Full; PVDF_COUNT]);
-            assert_eq!((trusts, changes), one_by_one.check(&samples), "frame {n}: {samples:?}");
+            assert_eq!((trusts, changes), one_by_one(&mut each, &samples), "frame {n}: {samples:?}");
         }
     }
 

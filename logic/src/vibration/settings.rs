@@ -1,12 +1,8 @@
-//! Settings of S1.
-
 use crate::setting::settings;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct VibrationConfig {
-    /// Samples (14 bits).
     pub s1: u16,
-    /// Samples (14 bits).
     pub impact_level: u16,
     /// Real slip onsets stay below 300 per mille, a shaken rig reaches 2500.
     pub impact_permille: u16,

@@ -10,8 +10,6 @@ use std::str::FromStr;
 
 use ranges::Law;
 
-use crate::file::quantity::Gain;
-use crate::file::sections::Pvdf;
 use crate::file::{SceneError, SceneFile};
 use crate::physics::GRAVITY_M_S2;
 use crate::random::{Noise, Source};
@@ -296,19 +294,9 @@ impl Page {
         ]);
         let factor = self.draw(ranges::FILM_FACTOR);
         let mains_hz = self.mains_hz();
-        let scenes = Pvdf::default();
-        let of_film = |gain: Gain| factor * gain.get();
-        self.table(
-            "[pvdf]",
-            &[
-                ("normal_mv_per_n", of_film(scenes.normal_mv_per_n)),
-                ("shear_mv_per_n", of_film(scenes.shear_mv_per_n)),
-                ("release_mv_per_n", of_film(scenes.release_mv_per_n)),
-                ("texture_mv_per_n", of_film(scenes.texture_mv_per_n)),
-                ("adjust_mv_per_n_s", of_film(scenes.adjust_mv_per_n_s)),
-                ("mains_hz", mains_hz),
-            ],
-        );
+        self.table("[pvdf]", &[("mains_hz", mains_hz)]);
+        let scenes = [("normal", 2.0), ("shear", 3.0), ("release", 200.0), ("texture", 40.0)];
+        scenes.iter().for_each(|(what, gain)| self.number(&format!("{what}_mv_per_n"), factor * gain));
         self.drawn(&[
             ("motor_hz", ranges::GEAR_HZ),
             ("motor_mv", ranges::GEAR_MV),

@@ -4,7 +4,8 @@
 //! `without = ["knock"]` takes a table or list of the base away first. `name` and `title` are never the base's. A base may
 //! itself have one.
 //!
-//! All texts stand one after the other in one space of bytes, so that a span tells the file as well.
+//! What neither says is in `defaults.toml`. All texts stand one after the other in one space of bytes, so that a span tells the file as
+//! well.
 
 use std::borrow::Cow;
 use std::ops::Range;
@@ -12,13 +13,16 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::SceneError;
+use super::{SceneError, near};
 
 pub type Find<'a> = &'a dyn Fn(&str) -> Option<(String, Cow<'static, str>)>;
 
 const BASE: &str = "base";
 const WITHOUT: &str = "without";
 const OWN: [&str; 2] = ["name", "title"];
+const DEFAULTS: &str = include_str!("defaults.toml");
+/// Tables whose defaults hold only where a scene names them.
+const ON_REQUEST: [&str; 4] = ["contact", "robot", "photoelastic", "skin"];
 
 struct Source {
     file: String,
@@ -26,6 +30,7 @@ struct Source {
     start: usize,
 }
 
+/// The scene, its bases, and the defaults.
 pub(super) struct Sources(Vec<Source>);
 
 impl Sources {
@@ -36,11 +41,16 @@ impl Sources {
             if sources.0.iter().any(|source| source.file == file) {
                 return Err(sources.wrong(asked_at, format!("base: {file} stands on itself")));
             }
-            let start = sources.0.last().map_or(0, |last| last.start + last.text.len() + 1);
-            sources.0.push(Source { file, text, start });
+            sources.push(file, text);
             next = sources.next(find)?;
         }
+        sources.push("defaults.toml".to_owned(), Cow::Borrowed(DEFAULTS));
         Ok(sources)
+    }
+
+    fn push(&mut self, file: String, text: Cow<'static, str>) {
+        let start = self.0.last().map_or(0, |last| last.start + last.text.len() + 1);
+        self.0.push(Source { file, text, start });
     }
 
     #[expect(clippy::type_complexity, reason = "the next source and where it is asked for, used once")]
@@ -56,13 +66,28 @@ impl Sources {
         match find(name) {
             Some((file, text)) => Ok(Some((file, text, at))),
             None => {
-                Err(self.wrong(at, format!("base: no scene is called `{name}`; near it: {}", near(name))))
+                let known = crate::builtin().iter().chain(crate::builtin::parts());
+                let near = near(name, known.map(|(known, _)| *known));
+                Err(self.wrong(at, format!("base: no scene is called `{name}`; near it: {near}")))
             }
         }
     }
 
+    pub(super) fn with_defaults(&self) -> Result<Spanned<DeTable<'_>>, SceneError> {
+        let scene = self.merged()?;
+        let span = scene.span();
+        let scene = scene.into_inner();
+        let Some(defaults) = self.0.last() else { return Ok(Spanned::new(span, scene)) };
+        let mut whole = self.table(defaults)?;
+        for key in ON_REQUEST.into_iter().filter(|key| !scene.contains_key(*key)) {
+            whole.remove(key);
+        }
+        put_over(scene, &mut whole);
+        Ok(Spanned::new(span, whole))
+    }
+
     pub(super) fn merged(&self) -> Result<Spanned<DeTable<'_>>, SceneError> {
-        let mut sources = self.0.iter().rev();
+        let mut sources = self.0.iter().rev().skip(1);
         let Some(first) = sources.next() else { return Ok(Spanned::new(0..0, DeTable::new())) };
         let mut whole = self.table(first)?;
         let mut span = first.start..first.start + first.text.len();
@@ -119,7 +144,8 @@ impl Sources {
         if source.start > 0 {
             what += &format!(" (a base of {})", self.0[0].file);
         }
-        SceneError::at(span.start - source.start, what, &source.text, &source.file)
+        let before = source.text.get(..span.start - source.start).unwrap_or(&source.text);
+        SceneError { file: source.file.clone(), line: before.matches('\n').count() + 1, what }
     }
 
     pub(super) fn of_toml(&self, span: Range<usize>, message: &str) -> SceneError {
@@ -174,13 +200,4 @@ fn moved_value(value: Spanned<DeValue<'_>>, by: usize) -> Spanned<DeValue<'_>> {
 fn moved<T>(one: Spanned<T>, by: usize) -> Spanned<T> {
     let span = one.span();
     Spanned::new(span.start + by..span.end + by, one.into_inner())
-}
-
-const OFFERED: usize = 4;
-
-fn near(name: &str) -> String {
-    let known = crate::builtin().iter().chain(crate::builtin::parts());
-    let mut known: Vec<&str> = known.map(|(known, _)| *known).collect();
-    known.sort_by(|a, b| strsim::jaro_winkler(b, name).total_cmp(&strsim::jaro_winkler(a, name)));
-    known[..OFFERED.min(known.len())].join(", ")
 }

@@ -2,13 +2,15 @@
 
 use std::ops::Range;
 
+use serde::Deserialize;
 use tenax_hal_shim::behaviour::Behaviour;
 use tenax_hal_shim::channel::{CHANNELS, FSR, FSR_COUNT, Input, MYO_EXTENSOR, MYO_FLEXOR};
 use toml::Spanned;
+use toml::de::{DeTable, ValueDeserializer};
 
 use super::SceneFile;
-use super::quantity::{Instant, Mu};
-use super::sections::{Command, CommandKind, FaultKind, Level, SensorFault};
+use super::quantity::Instant;
+use super::sections::{Command, CommandKind, FaultKind, SensorFault};
 use super::step::step;
 
 pub(super) struct Wrong {
@@ -22,19 +24,17 @@ pub(super) fn demand(fits: bool, span: Range<usize>, what: impl FnOnce() -> Stri
     if fits { Ok(()) } else { Err(Wrong { span, what: what() }) }
 }
 
-pub(super) fn check(scene: &SceneFile) -> Checked {
+pub(super) fn check(scene: &SceneFile, table: &DeTable<'_>) -> Checked {
+    let instants = instants(table);
     friction(scene)?;
-    level(scene)?;
-    instants(scene)?;
-    one_story(scene)?;
+    end(scene, &instants)?;
+    mass(scene)?;
+    one_story(scene, &instants)?;
     step(scene)?;
     let opening = &scene.gripper.opening_mm;
-    demand(opening.get_ref().get() <= scene.gripper.range_mm.get(), opening.span(), || {
-        format!(
-            "opening_mm = {} is wider than range_mm = {}",
-            opening.get_ref().get(),
-            scene.gripper.range_mm.get()
-        )
+    let (opening_mm, range_mm) = (opening.get_ref().get(), scene.gripper.range_mm.get());
+    demand(opening_mm <= range_mm, opening.span(), || {
+        format!("opening_mm = {opening_mm} is wider than range_mm = {range_mm}")
     })?;
     for lift in &scene.electrode_lift {
         let channel = lift.channel.get_ref();
@@ -49,60 +49,41 @@ pub(super) fn check(scene: &SceneFile) -> Checked {
 fn friction(scene: &SceneFile) -> Checked {
     let pairs = scene.wet.iter().map(|wet| (wet.mu_s, &wet.mu_d));
     for (mu_s, mu_d) in pairs.chain([(scene.contact.mu_s, &scene.contact.mu_d)]) {
-        let mu_d_value = Mu::get(*mu_d.get_ref());
-        demand(mu_d_value <= mu_s.get(), mu_d.span(), || {
+        let (mu_s, span, mu_d) = (mu_s.get(), mu_d.span(), mu_d.get_ref().get());
+        demand(mu_d <= mu_s, span, || {
             format!(
-                "mu_d = {mu_d_value} is greater than mu_s = {}; a contact cannot slide harder than it sticks",
-                mu_s.get()
+                "mu_d = {mu_d} is greater than mu_s = {mu_s}; a contact cannot slide harder than it sticks"
             )
         })?;
     }
     Ok(())
 }
 
-fn level(scene: &SceneFile) -> Checked {
-    let contact = &scene.contact;
-    let skin = contact.skin_n_per_mm.as_ref().map(|skin| ("skin_n_per_mm", skin.span()));
-    let skin_ms = contact.skin_ms.as_ref().map(|skin| ("skin_ms", skin.span()));
-    let stribeck = contact.stribeck_mm_s.as_ref().map(|speed| ("stribeck_mm_s", speed.span()));
-    for (key, level, needs) in
-        [(skin, Level::L1, "l1"), (skin_ms, Level::L1, "l1"), (stribeck, Level::L2, "l2")]
-    {
-        if let Some((key, span)) = key.filter(|_| contact.level != level) {
-            let what = format!("{key} belongs to level = \"{needs}\" and would change nothing here");
-            return Err(Wrong { span, what });
+/// Instants of the entries of all lists, each with its list's name.
+fn instants(table: &DeTable<'_>) -> Vec<(String, Spanned<Instant>)> {
+    let mut all = Vec::new();
+    for (list, value) in table {
+        for entry in value.get_ref().as_array().into_iter().flat_map(|entries| entries.iter()) {
+            for instant in ["at_s", "until_s"].into_iter().filter_map(|key| entry.get_ref().get(key)) {
+                let instant = Spanned::deserialize(ValueDeserializer::from(instant.clone()));
+                all.extend(instant.map(|instant| (list.get_ref().to_string(), instant)));
+            }
         }
     }
-    if let Some(rise) = contact.mu_per_decade.as_ref().filter(|_| contact.level == Level::L2) {
-        let what =
-            "mu_per_decade belongs to level = \"l0\" or \"l1\"; with l2 friction falls with speed".to_owned();
-        return Err(Wrong { span: rise.span(), what });
-    }
-    Ok(())
+    all
 }
 
-fn instants(scene: &SceneFile) -> Checked {
-    let mut all: Vec<&Spanned<Instant>> = Vec::new();
-    all.extend(scene.wet.iter().flat_map(|wet| [Some(&wet.at_s), wet.until_s.as_ref()]).flatten());
-    all.extend(scene.fill.iter().map(|fill| &fill.at_s));
-    all.extend(scene.moves.iter().map(|step| &step.at_s));
-    all.extend(scene.swing.iter().map(|swing| &swing.at_s));
-    all.extend(scene.pull.iter().map(|pull| &pull.at_s));
-    all.extend(scene.press.iter().map(|press| &press.at_s));
-    all.extend(scene.sweep.iter().map(|sweep| &sweep.at_s));
-    all.extend(scene.knock.iter().map(|knock| &knock.at_s));
-    all.extend(scene.hum.iter().map(|hum| &hum.at_s));
-    all.extend(scene.muscle.iter().map(|muscle| &muscle.at_s));
-    all.extend(scene.electrode_lift.iter().map(|lift| &lift.at_s));
-    all.extend(scene.jam.iter().map(|jam| &jam.at_s));
-    all.extend(scene.fault.iter().flat_map(|fault| [Some(&fault.at_s), fault.until_s.as_ref()]).flatten());
-    all.extend(scene.command.iter().map(|command| &command.at_s));
-    for instant in all {
+fn end(scene: &SceneFile, instants: &[(String, Spanned<Instant>)]) -> Checked {
+    for (_, instant) in instants {
         let at_s = instant.get_ref().get();
         demand(at_s <= scene.duration_s(), instant.span(), || {
             format!("{at_s} s is after the scene's end at duration_s = {}", scene.duration_s())
         })?;
     }
+    Ok(())
+}
+
+fn mass(scene: &SceneFile) -> Checked {
     let mut poured_kg = scene.object.as_ref().map_or(0.0, |object| object.get_ref().mass_kg.get());
     for fill in &scene.fill {
         poured_kg += fill.add_kg.get_ref().get();
@@ -113,39 +94,29 @@ fn instants(scene: &SceneFile) -> Checked {
     Ok(())
 }
 
-fn one_story(scene: &SceneFile) -> Checked {
-    match (&scene.object, &scene.robot) {
-        (Some(_), Some(robot)) => Err(Wrong {
-            span: robot.span(),
-            what: "a scene has [object] (grasped) or [robot] (strokes a surface), not both".to_owned(),
-        }),
-        (None, None) => Err(Wrong {
-            span: 0..0,
-            what: "a scene needs [object] (something to grasp) or [robot] (strokes a surface)".to_owned(),
-        }),
-        (Some(_), None) => {
-            let press = scene.press.iter().map(|press| &press.at_s);
-            let foreign = press.chain(scene.sweep.iter().map(|sweep| &sweep.at_s));
-            refuse(foreign, "[[press]] and [[sweep]] are the robot's; this scene has an [object]")
+fn one_story(scene: &SceneFile, instants: &[(String, Spanned<Instant>)]) -> Checked {
+    let wrong = |span, what: String| Err(Wrong { span, what });
+    let (foreign, own): (&[&str], _) = match (&scene.object, &scene.robot) {
+        (Some(_), Some(robot)) => {
+            let what = "a scene has [object] (grasped) or [robot] (strokes a surface), not both";
+            return wrong(robot.span(), what.to_owned());
         }
-        (None, Some(_)) => {
-            if let Some(pitch) = &scene.pitch {
-                let what = "[pitch] needs an [object]; this scene has a [robot]".to_owned();
-                return Err(Wrong { span: pitch.span(), what });
-            }
-            let what =
-                "[[fill]], [[move]], [[swing]] and [[pull]] need an [object]; this scene has a [robot]";
-            let fill_move =
-                scene.fill.iter().map(|fill| &fill.at_s).chain(scene.moves.iter().map(|go| &go.at_s));
-            let swing_pull =
-                scene.swing.iter().map(|swing| &swing.at_s).chain(scene.pull.iter().map(|pull| &pull.at_s));
-            refuse(fill_move.chain(swing_pull), what)
+        (None, None) => {
+            let what = "a scene needs [object] (something to grasp) or [robot] (strokes a surface)";
+            return wrong(0..0, what.to_owned());
         }
+        (Some(_), None) => (&["press", "sweep"], "[object]"),
+        (None, Some(_)) => (&["fill", "move", "swing", "pull"], "[robot]"),
+    };
+    if let (None, Some(pitch)) = (&scene.object, &scene.pitch) {
+        return wrong(pitch.span(), "[pitch] needs an [object]; this scene has a [robot]".to_owned());
     }
-}
-
-fn refuse<'a>(mut foreign: impl Iterator<Item = &'a Spanned<Instant>>, what: &str) -> Checked {
-    foreign.next().map_or(Ok(()), |instant| Err(Wrong { span: instant.span(), what: what.to_owned() }))
+    match instants.iter().find(|(list, _)| foreign.contains(&list.as_str())) {
+        Some((list, instant)) => {
+            wrong(instant.span(), format!("[[{list}]] is nothing for a scene with {own}"))
+        }
+        None => Ok(()),
+    }
 }
 
 fn fault(fault: &SensorFault) -> Checked {
@@ -160,67 +131,44 @@ fn fault(fault: &SensorFault) -> Checked {
     demand(kind != FaultKind::Open || is_switched, fault.channel.span(), || {
         format!("channel = \"{}\" is behind no switch", channel.name())
     })?;
-    let press = fault.press_n.as_ref().map(Spanned::span);
-    only(kind == FaultKind::Pressed, press, fault, "pressed", "press_n")?;
-    let drift = fault.drift_per_s.as_ref().map(Spanned::span);
-    only(kind == FaultKind::Drift, drift, fault, "drift", "drift_per_s")?;
-    let with = fault.with.as_ref().map(Spanned::span);
-    only(
-        [FaultKind::Swapped, FaultKind::Bridged].contains(&kind),
-        with,
-        fault,
-        "swapped\" or \"bridged",
-        "with",
-    )
-}
-
-fn only(is_it: bool, key: Option<Range<usize>>, fault: &SensorFault, kind: &str, name: &str) -> Checked {
-    match key {
+    let exchanges = [FaultKind::Swapped, FaultKind::Bridged].contains(&kind);
+    let own = [
+        (kind == FaultKind::Pressed, fault.press_n.as_ref().map(Spanned::span), "pressed", "press_n"),
+        (kind == FaultKind::Drift, fault.drift_per_s.as_ref().map(Spanned::span), "drift", "drift_per_s"),
+        (exchanges, fault.with.as_ref().map(Spanned::span), "swapped\" or \"bridged", "with"),
+    ];
+    own.into_iter().try_for_each(|(is_it, key, kind, name)| match key {
         None => demand(!is_it, fault.channel.span(), || format!("kind = \"{kind}\" needs {name}")),
-        Some(span) if !is_it => {
-            Err(Wrong { span, what: format!("{name} belongs to kind = \"{kind}\" only") })
-        }
-        Some(_) => Ok(()),
-    }
+        Some(span) => demand(is_it, span, || format!("{name} belongs to kind = \"{kind}\" only")),
+    })
 }
 
 fn command(command: &Command) -> Checked {
-    let kind = *command.kind.get_ref();
-    let wrong = |span, what: String| Err(Wrong { span, what });
-    match kind {
+    let needs = |what: &str| Wrong { span: command.kind.span(), what: what.to_owned() };
+    match *command.kind.get_ref() {
         CommandKind::Close | CommandKind::Open => {
-            let Some(duty) = &command.duty_permille else {
-                return wrong(command.kind.span(), "a drive needs duty_permille and for_s".to_owned());
-            };
+            let duty = command
+                .duty_permille
+                .as_ref()
+                .ok_or_else(|| needs("a drive needs duty_permille and for_s"))?;
             demand(*duty.get_ref() <= 1_000, duty.span(), || {
                 format!("duty_permille = {} is outside 0..=1000", duty.get_ref())
             })?;
-            demand(command.for_s.is_some(), command.kind.span(), || "a drive needs for_s".to_owned())
+            command.for_s.map(|_| ()).ok_or_else(|| needs("a drive needs for_s"))
         }
         CommandKind::Begin(Behaviour::Turn { .. }) => {
-            let Some(value) = &command.value else {
-                return wrong(command.kind.span(), "a turn needs value, in degrees".to_owned());
-            };
+            let value = command.value.as_ref().ok_or_else(|| needs("a turn needs value, in degrees"))?;
             demand((-180..=180).contains(value.get_ref()), value.span(), || {
                 format!("value = {} degrees is outside -180..=180", value.get_ref())
             })
         }
         CommandKind::Begin(_) | CommandKind::End | CommandKind::Zero | CommandKind::Consent => Ok(()),
         CommandKind::Set(id) => {
-            let Some(value) = &command.value else {
-                return wrong(command.kind.span(), "a setting needs value".to_owned());
-            };
-            let row = id.row();
-            let range = row.range();
+            let value = command.value.as_ref().ok_or_else(|| needs("a setting needs value"))?;
+            let (row, range) = (id.row(), id.row().range());
             demand(range.contains(value.get_ref()), value.span(), || {
-                format!(
-                    "value = {} {} is outside {}..={} of {}",
-                    value.get_ref(),
-                    row.unit,
-                    range.start(),
-                    range.end(),
-                    row.name
-                )
+                let (value, low, high) = (value.get_ref(), range.start(), range.end());
+                format!("value = {value} {} is outside {low}..={high} of {}", row.unit, row.name)
             })
         }
     }

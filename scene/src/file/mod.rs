@@ -1,10 +1,7 @@
 //! Scene files: TOML in, a checked [`SceneFile`] out, or one message that says where and what is allowed.
 
 mod base;
-mod channel;
 mod check;
-mod defaults;
-mod error;
 mod happening;
 pub(crate) mod quantity;
 pub(crate) mod sections;
@@ -20,7 +17,6 @@ use toml::Spanned;
 
 use crate::builtin::find;
 
-pub use error::SceneError;
 pub use happening::Happening;
 use quantity::{Duration, Speed};
 use sections::{
@@ -28,6 +24,23 @@ use sections::{
     Move, Muscle, Myo, Object, Photoelastic, Pitch, Press, Pull, Pvdf, Robot, SensorFault, Skin, Strain,
     Sweep, Swing, Table, Vibrator, Wet,
 };
+
+/// An error of a scene file, in one line.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{file}:{line}: {what}")]
+pub struct SceneError {
+    file: String,
+    line: usize,
+    what: String,
+}
+
+/// The four names that are nearest to `name`, in one line.
+fn near<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> String {
+    let mut known: Vec<&str> = known.collect();
+    known.sort_by(|a, b| strsim::jaro_winkler(b, name).total_cmp(&strsim::jaro_winkler(a, name)));
+    known.truncate(4);
+    known.join(", ")
+}
 
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -38,65 +51,42 @@ pub struct SceneFile {
     pub from: String,
     duration_s: Duration,
     slip_floor_mm_s: Speed,
-    #[serde(default)]
     pub(crate) arm: Arm,
     pub(crate) contact: Contact,
     pub(crate) object: Option<Spanned<Object>>,
     pub(crate) pitch: Option<Spanned<Pitch>>,
-    #[serde(default)]
     pub(crate) table: Table,
     pub(crate) robot: Option<Spanned<Robot>>,
-    #[serde(default)]
     pub(crate) gripper: Gripper,
-    #[serde(default)]
     pub(crate) pvdf: Pvdf,
-    #[serde(default)]
     pub(crate) fsr: Fsr,
-    #[serde(default)]
     pub(crate) myo: Myo,
-    #[serde(default)]
     pub(crate) strain: Strain,
-    #[serde(default)]
     pub(crate) array: Array,
-    #[serde(default)]
     pub(crate) camera: Camera,
     pub(crate) photoelastic: Option<Photoelastic>,
     pub(crate) skin: Option<Skin>,
     pub(crate) vibrator: Option<Vibrator>,
-    #[serde(default)]
     pub(crate) wet: Vec<Wet>,
-    #[serde(default)]
     pub(crate) fill: Vec<Fill>,
-    #[serde(default, rename = "move")]
+    #[serde(rename = "move")]
     pub(crate) moves: Vec<Move>,
-    #[serde(default)]
     pub(crate) swing: Vec<Swing>,
-    #[serde(default)]
     pub(crate) pull: Vec<Pull>,
-    #[serde(default)]
     pub(crate) press: Vec<Press>,
-    #[serde(default)]
     pub(crate) sweep: Vec<Sweep>,
-    #[serde(default)]
     pub(crate) knock: Vec<Knock>,
-    #[serde(default)]
     pub(crate) hum: Vec<Hum>,
-    #[serde(default)]
     pub(crate) muscle: Vec<Muscle>,
-    #[serde(default)]
     pub(crate) electrode_lift: Vec<ElectrodeLift>,
-    #[serde(default)]
     pub(crate) jam: Vec<Jam>,
-    #[serde(default)]
     pub(crate) fault: Vec<SensorFault>,
-    #[serde(default)]
     pub(crate) command: Vec<Command>,
     pub(crate) line_trusted: Option<bool>,
 }
 
 impl SceneFile {
     /// Reads a scene, whose base is one of the program's. `file_name` is what errors call it.
-    /// An error says the file, the line, the key, and what is allowed there.
     pub fn parse(text: &str, file_name: &str) -> Result<Self, SceneError> {
         Self::parse_upon(text, file_name, &find)
     }
@@ -105,14 +95,14 @@ impl SceneFile {
     /// An error says the file, the line, the key, and what is allowed there; the file may be the base.
     pub fn parse_upon(text: &str, file_name: &str, find: Find<'_>) -> Result<Self, SceneError> {
         let sources = Sources::read(text, file_name, find)?;
-        let scene = Self::deserialize(toml::Deserializer::from(sources.merged()?))
+        let table = sources.with_defaults()?;
+        let scene = Self::deserialize(toml::Deserializer::from(table.clone()))
             .map_err(|error| sources.of_toml(error.span().unwrap_or(0..0), error.message()))?;
-        check::check(&scene).map_err(|wrong| sources.wrong(wrong.span, wrong.what))?;
+        check::check(&scene, table.get_ref()).map_err(|wrong| sources.wrong(wrong.span, wrong.what))?;
         Ok(scene)
     }
 
     /// A scene and what it stands on as one table, unchecked: for whoever draws its numbers anew.
-    /// Fails if it is no TOML, or its base is not there.
     pub fn table(text: &str, file_name: &str) -> Result<toml::Table, SceneError> {
         let sources = Sources::read(text, file_name, &find)?;
         toml::Table::deserialize(toml::Deserializer::from(sources.merged()?))
@@ -133,7 +123,7 @@ impl SceneFile {
 
     pub fn lifts(&self) -> impl Iterator<Item = (usize, Range<f64>)> + '_ {
         self.electrode_lift.iter().map(|lift| {
-            let at_s = lift.at_s.get_ref().get();
+            let at_s = lift.at_s.get();
             // What it heard is smoothed: it falls for as long as an envelope rises, from 3 V in 0.1 s.
             let settles_s = 1.7 * self.myo.rise_ms.get() / 1e3;
             (lift.channel.get_ref().index() - MYO_FLEXOR, at_s..at_s + lift.for_s.get() + settles_s)
@@ -147,4 +137,14 @@ impl SceneFile {
     pub const fn slip_floor_mm_s(&self) -> f64 {
         self.slip_floor_mm_s.get()
     }
+}
+
+/// The smallest scene, with every sensor; `first` goes before its tables, `then` after them.
+#[cfg(test)]
+pub(crate) fn plain(first: &str, then: &str) -> SceneFile {
+    let text = format!(
+        "name = 'n'\ntitle = 't'\nfrom = 'assumed'\nduration_s = 2\nslip_floor_mm_s = 1\n{first}[robot]\n[skin]\n\
+         [contact]\nmu_s = 0.5\nmu_d = 0.4\npad_length_mm = 18\npitch_mm = 1\n{then}"
+    );
+    SceneFile::parse(&text, "plain").unwrap_or_else(|error| panic!("{error}"))
 }

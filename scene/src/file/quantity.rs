@@ -1,14 +1,9 @@
 //! Numbers of a scene file: each kind knows what it may be, so that a wrong one is refused where it stands.
 
 use serde::Deserialize;
+use tenax_hal_shim::channel::{CHANNELS, by_name};
 
-#[derive(Debug, thiserror::Error)]
-#[error("{value} is outside {low}..={high}")]
-pub struct OutOfRange {
-    value: f64,
-    low: f64,
-    high: f64,
-}
+use super::near;
 
 macro_rules! quantities {
     ($($name:ident: $low:literal to $high:literal;)*) => {$(
@@ -30,18 +25,18 @@ macro_rules! quantities {
         }
 
         impl TryFrom<f64> for $name {
-            type Error = OutOfRange;
+            type Error = String;
 
             // NaN is in no range.
-            fn try_from(value: f64) -> Result<Self, OutOfRange> {
+            fn try_from(value: f64) -> Result<Self, String> {
                 let allowed = $low..=$high;
-                allowed.contains(&value).then_some(Self(value)).ok_or(OutOfRange { value, low: $low, high: $high })
+                let wrong = || format!("{value} is outside {}..={}", allowed.start(), allowed.end());
+                allowed.contains(&value).then_some(Self(value)).ok_or_else(wrong)
             }
         }
     )*};
 }
 
-// Each kind, its range and its unit.
 quantities! {
     Instant: 0.0 to 3600.0; // s
     Duration: 0.000125 to 3600.0; // s, at least one scan
@@ -71,4 +66,30 @@ quantities! {
     Millivolts: 0.0 to 3300.0;
     Gain: 0.0 to 1000.0;
     Part: 0.0 to 1.0;
+}
+
+/// Index of a channel in [`CHANNELS`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(try_from = "String")]
+pub struct ChannelName(usize);
+
+impl ChannelName {
+    pub const fn index(self) -> usize {
+        self.0
+    }
+
+    pub const fn name(self) -> &'static str {
+        CHANNELS[self.0].name
+    }
+}
+
+impl TryFrom<String> for ChannelName {
+    type Error = String;
+
+    fn try_from(name: String) -> Result<Self, String> {
+        by_name(&name).map(Self).ok_or_else(|| {
+            let near = near(&name, CHANNELS.iter().map(|channel| channel.name));
+            format!("no channel is called `{name}`; near it: {near}")
+        })
+    }
 }

@@ -50,8 +50,8 @@ impl Surface {
         let patches = wet.iter().map(|wet| {
             let ramp_s = wet.ramp_ms.get() / 1e3;
             Patch {
-                wetting: Span::new(wet.at_s.get_ref().get(), ramp_s),
-                drying: Span::new(wet.until_s.as_ref().map_or(f64::INFINITY, |s| s.get_ref().get()), ramp_s),
+                wetting: Span::new(wet.at_s.get(), ramp_s),
+                drying: Span::new(wet.until_s.as_ref().map_or(f64::INFINITY, |s| s.get()), ramp_s),
                 friction: Friction { mu_s: wet.mu_s.get(), mu_d: wet.mu_d.get_ref().get() },
             }
         });
@@ -85,20 +85,5 @@ impl Surface {
 impl Patch {
     fn dried(&self, t_s: f64) -> f64 {
         if t_s < self.drying.begin_s { 0.0 } else { smooth(self.drying.progress(t_s)) }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn sliding_friction_rises_by_the_same_part_with_each_decade() {
-        let friction = Friction { mu_s: 0.5, mu_d: 0.4 };
-        assert_eq!(friction.rise(0.1, 0.0), 0.0);
-        let decades = [9e-3, 99e-3].map(|speed_m_s| friction.rise(0.1, speed_m_s));
-        assert!((decades[0] - 0.04).abs() < 1e-12 && (decades[1] - 0.08).abs() < 1e-12, "{decades:?}");
-        let slope_s_per_m = 0.4 * 0.1 / std::f64::consts::LN_10 / SLOWEST_M_S;
-        assert!((friction.rise_s_per_m(0.1, 0.0) / slope_s_per_m - 1.0).abs() < 1e-3);
     }
 }

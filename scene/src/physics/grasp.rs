@@ -11,7 +11,6 @@ use crate::file::SceneFile;
 use crate::file::sections::Object;
 use crate::schedule::{STEP_S, Span};
 
-/// Two fingers.
 const PADS: f64 = 2.0;
 
 /// The object, what is poured into it, the table under it, and the two pads at its sides.
@@ -58,12 +57,11 @@ impl Grasp {
     pub(crate) fn new(scene: &SceneFile, object: &Object) -> Self {
         let empty_kg = object.mass_kg.get();
         let mat_n_per_m = scene.table.mat_n_per_mm.get() * 1e3;
-        // Damping of the mat with the empty object on it, as a part of critical.
         let mat_ns_per_m = 2.0 * scene.table.damping.get() * (mat_n_per_m * empty_kg).sqrt();
         let fills = scene
             .fill
             .iter()
-            .map(|fill| (Span::of(&fill.at_s, fill.for_s), fill.add_kg.get_ref().get()))
+            .map(|fill| (Span::of(fill.at_s, fill.for_s), fill.add_kg.get_ref().get()))
             .collect();
         Self {
             empty_kg,
@@ -82,7 +80,7 @@ impl Grasp {
             mat_ns_per_m,
             rest_m: -empty_kg * GRAVITY_M_S2 / mat_n_per_m,
             contact: Level::new(&scene.contact),
-            mu_per_decade: scene.contact.mu_per_decade(),
+            mu_per_decade: scene.contact.mu_per_decade.get(),
             sticks: true,
             shear_part: 0.0,
             in_hand: true,
@@ -141,7 +139,6 @@ impl Grasp {
         let shear_n = (outcome.force_n - drag_ns_per_m * free_m_s) / PADS;
         self.shear_part = if grip_n > 0.0 { (shear_n.abs() / (holds * grip_n)).min(1.0) } else { 0.0 };
 
-        // Both at once, by the ellipsoid.
         let along_n = free_n.abs() / PADS / holds;
         self.needed_n = along_n.hypot(turn.needed_n);
         self.needs_n = [along_n, turn.needed_n];
@@ -243,46 +240,5 @@ impl Grasp {
 
     pub fn margin_n(&self, grip_n: f64) -> f64 {
         self.holds * (grip_n - self.needed_n)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::SceneFile;
-
-    fn lifted(grip_n: f64, for_s: f64) -> (Grasp, Touch) {
-        let (_, text) = crate::builtin()[0];
-        let mut scene = SceneFile::parse(text, "glass").unwrap();
-        scene.fill.clear();
-        scene.wet.clear();
-        let mut hand = Hand::new(
-            &SceneFile::parse(&text.replace("at_s = 5.0", "at_s = 1.0"), "glass").unwrap().moves[..1],
-            &[],
-        );
-        let mut grasp = Grasp::new(&scene, scene.object.as_ref().unwrap().get_ref());
-        let mut touch = Touch::default();
-        for step in 0..(for_s / STEP_S) as u32 {
-            let t_s = f64::from(step) * STEP_S;
-            hand.step(t_s, grasp.table_part());
-            touch = grasp.step(t_s, &hand, grip_n);
-        }
-        (grasp, touch)
-    }
-
-    #[test]
-    fn a_held_glass_pulls_with_half_its_weight_on_each_finger_and_never_creeps() {
-        let (grasp, touch) = lifted(6.0, 60.0);
-        assert!((touch.shear_n - 0.25 * GRAVITY_M_S2 / 2.0).abs() < 1e-9, "{} N", touch.shear_n);
-        assert_eq!((grasp.slid_m, touch.slide_m_s, grasp.is_held()), (0.0, 0.0, true));
-    }
-
-    #[test]
-    fn what_is_needed_is_where_it_begins_to_slide() {
-        // mu_s = 0.5: the weight alone needs m g / (2 mu_s); the lift's acceleration needs up to 1.6 % more.
-        let needed_n = 0.25 * GRAVITY_M_S2 / (2.0 * 0.5);
-        assert!(lifted(needed_n * 1.02, 5.0).1.sticks);
-        let (grasp, _) = lifted(needed_n * 0.98, 30.0);
-        assert!(grasp.slid_m < 0.0 || grasp.is_dropped());
     }
 }

@@ -1,7 +1,7 @@
 //! The wearer's arm, which carries the hand up, down, and swinging.
 
 use crate::file::sections::{Move, Swing};
-use crate::pole::LowPass;
+use crate::schedule::LowPass;
 use crate::schedule::{STEP_S, Span};
 
 /// Time constant with which a person notices that the table carries, s (assumed).
@@ -26,12 +26,12 @@ impl Hand {
         let moves = moves.iter().map(|step| {
             let by_m = step.to_mm.get() / 1e3 - from_m;
             from_m += by_m;
-            (Span::of(&step.at_s, step.for_s), by_m)
+            (Span::of(step.at_s, step.for_s), by_m)
         });
         let moves = moves.collect();
         let swings = swings.iter().map(|swing| {
             let for_s = f64::from(swing.cycles.get()) / swing.rate_hz.get();
-            (Span::new(swing.at_s.get_ref().get(), for_s), swing.clone())
+            (Span::new(swing.at_s.get(), for_s), swing.clone())
         });
         Self {
             moves,

@@ -166,30 +166,6 @@ mod tests {
         assert!(!turns(critical_n * 1.001) && turns(critical_n * 0.999));
     }
 
-    #[test]
-    fn without_friction_it_swings_with_the_period_of_a_pendulum() {
-        let (mut pitch, mut crossings, mut last) = (pitch(0.0, 20.0), Vec::new(), 1.0);
-        pitch.angle_rad = 0.01;
-        for n in 0..16_000 {
-            pitch.step(under(0.0), FRICTION);
-            if pitch.angle_rad < 0.0 && last >= 0.0 {
-                crossings.push(f64::from(n) * STEP_S);
-            }
-            last = pitch.angle_rad;
-        }
-        let period_s = (crossings[crossings.len() - 1] - crossings[0]) / (crossings.len() - 1) as f64;
-        let closed_form_s = std::f64::consts::TAU * (0.025_f64.powi(2) / (GRAVITY_M_S2 * 0.020)).sqrt();
-        assert!((period_s / closed_form_s - 1.0).abs() < 2e-3, "{period_s} for {closed_form_s} s");
-    }
-
-    #[test]
-    fn shear_leaves_less_for_torsion() {
-        let (mut alone, mut shared) = (pitch(2.0, 0.0), pitch(2.0, 0.0));
-        alone.step(under(2.0), FRICTION);
-        shared.step(Load { shear_part: 0.9, ..under(2.0) }, FRICTION);
-        assert!(!alone.turns() && shared.turns());
-    }
-
     proptest! {
         #[test]
         fn torsional_friction_never_adds_energy(

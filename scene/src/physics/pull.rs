@@ -17,7 +17,7 @@ struct Pull {
 impl Pulls {
     pub(crate) fn new(pulls: &[sections::Pull]) -> Self {
         let pull = |pull: &sections::Pull| {
-            let (at_s, ramp_s) = (pull.at_s.get_ref().get(), pull.ramp_ms.get() / 1e3);
+            let (at_s, ramp_s) = (pull.at_s.get(), pull.ramp_ms.get() / 1e3);
             Pull {
                 comes: Span::new(at_s, ramp_s),
                 goes: Span::new(at_s + pull.for_s.get(), ramp_s),

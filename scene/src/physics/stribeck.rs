@@ -1,4 +1,4 @@
-//! L2: friction that falls with speed, under a mass on a spring.
+//! Friction that falls with speed, under a mass on a spring.
 //!
 //! The mass vibrates by itself exactly when `c + P dmu/dv < 0` at the sliding speed. That vibration is the continuous signal of the
 //! photoelastic sensor (Dubey 2006, section 3).
@@ -33,24 +33,7 @@ pub struct Slider {
     pub friction: Stribeck,
 }
 
-/// Small vibrations about steady sliding, from the linearised equation
-/// `m x'' + (c + P dmu/dv) x' + k x = 0`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SmallSignal {
-    /// Amplitudes go as exp(growth t), 1/s. Above 0 it vibrates by itself.
-    pub growth_per_s: f64,
-    pub omega_rad_s: f64,
-}
-
 impl Slider {
-    /// Growth and frequency of the linearised equation at `surface_m_s` under `normal_n`.
-    pub fn small_signal(&self, normal_n: f64, surface_m_s: f64) -> SmallSignal {
-        let net_ns_per_m = self.damping_ns_per_m + normal_n * self.friction.slope_s_m(surface_m_s);
-        let growth_per_s = -net_ns_per_m / (2.0 * self.mass_kg);
-        let square = self.stiffness_n_per_m / self.mass_kg - growth_per_s * growth_per_s;
-        SmallSignal { growth_per_s, omega_rad_s: square.max(0.0).sqrt() }
-    }
-
     /// The longest inner step that keeps the growth rate within 1 % and the frequency within 0.2 %, s.
     ///
     /// The step multiplies an amplitude by `sqrt(1 - D)` with `D = dt (c + P dmu/dv) / m`, which is exp(growth dt) but
@@ -119,12 +102,7 @@ impl StribeckSlider {
     }
 }
 
-/// The sensing strip of Dubey 2006 (9 x 3 mm of metal on polyurethane). The paper gives neither its mass nor its
-/// frequency; all numbers are assumed.
-pub const STRIP: Slider =
-    Slider { mass_kg: 0.005, stiffness_n_per_m: 2_800.0, damping_ns_per_m: 4.0, friction: METAL };
-
-/// Metal on the metal strip. Assumed.
+/// Metal on the metal strip of Dubey 2006. Assumed.
 pub const METAL: Stribeck = Stribeck { mu_s: 0.35, mu_d: 0.30, speed_m_s: 0.003 };
 
 /// Plastic on the metal strip. Assumed: friction falls less than on metal ("higher in metal-metal contacts", section 6).

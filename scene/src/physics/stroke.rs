@@ -34,13 +34,13 @@ impl Stroke {
             presses: scene
                 .press
                 .iter()
-                .map(|press| (Span::of(&press.at_s, press.for_s), press.load_n.get()))
+                .map(|press| (Span::of(press.at_s, press.for_s), press.load_n.get()))
                 .collect(),
             ramp_s: robot.ramp_ms.get() / 1e3,
             sweeps: scene
                 .sweep
                 .iter()
-                .map(|sweep| (Span::of(&sweep.at_s, sweep.for_s), sweep.speed_mm_s.get() / 1e3))
+                .map(|sweep| (Span::of(sweep.at_s, sweep.for_s), sweep.speed_mm_s.get() / 1e3))
                 .collect(),
             mass_kg,
             stiffness_n_per_m,

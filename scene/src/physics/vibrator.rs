@@ -33,31 +33,3 @@ impl Vibrator {
         p.film_mv.get() * self.speed * self.speed * libm::sin(TAU * self.phase)
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::file::quantity::{Hertz, Milliseconds, Millivolts};
-
-    #[test]
-    fn it_spins_up_to_its_amplitude_and_frequency_and_rings_down() {
-        let mut motor = Vibrator::new(&sections::Vibrator {
-            film_mv: Millivolts::of(8.0),
-            full_hz: Hertz::of(200.0),
-            spin_ms: Milliseconds::of(40.0),
-        });
-        let heard = |motor: &mut Vibrator, ms| -> Vec<f64> { (0..8 * ms).map(|_| motor.step()).collect() };
-        assert!(heard(&mut motor, 100).iter().all(|mv| *mv == 0.0));
-        motor.drive(Duty::FULL);
-        heard(&mut motor, 400);
-        let second = heard(&mut motor, 1_000);
-        let peak = |mv: &[f64]| mv.iter().fold(0.0_f64, |peak, mv| peak.max(mv.abs()));
-        let turns = second.windows(2).filter(|two| two[0] < 0.0 && two[1] >= 0.0).count();
-        assert!((peak(&second) - 8.0).abs() < 0.1 && turns.abs_diff(200) <= 1, "{turns}");
-        motor.drive(Duty::default());
-        let rings = heard(&mut motor, 60);
-        // After 40 ms the speed is 1/e, and the force its square.
-        let ratio = peak(&rings[8 * 40..8 * 60]) / 8.0;
-        assert!((0.04..=0.14).contains(&ratio), "{ratio}");
-    }
-}

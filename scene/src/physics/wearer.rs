@@ -26,7 +26,6 @@ struct Contraction {
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Effort {
-    /// None is rest.
     pub intent: Option<Intent>,
     pub flexor_mv: f64,
     pub extensor_mv: f64,
@@ -35,7 +34,7 @@ pub struct Effort {
 impl Wearer {
     pub(crate) fn new(muscles: &[Muscle]) -> Self {
         let contractions = muscles.iter().map(|muscle| Contraction {
-            span: Span::of(&muscle.at_s, muscle.for_s),
+            span: Span::of(muscle.at_s, muscle.for_s),
             intent: muscle.intent,
             level_mv: muscle.level_mv.get(),
             until_grip_n: muscle.until_grip_n.map_or(f64::INFINITY, |newtons| newtons.get()),

@@ -36,7 +36,6 @@ pub const TURN_S: (f64, f64) = (6.6, 7.2);
 const SHEARS_S: [f64; 3] = [2.4, 4.1, 6.0];
 pub const HAND_S: [(f64, f64); 3] = [(0.5, 0.9), (4.0, 4.8), (7.3, 7.9)];
 
-/// From 0 to 1 between two instants, without a jerk.
 fn smooth(t_s: f64, from_s: f64, to_s: f64) -> f64 {
     let part = ((t_s - from_s) / (to_s - from_s)).clamp(0.0, 1.0);
     part * part * (3.0 - 2.0 * part)

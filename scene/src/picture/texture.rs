@@ -2,7 +2,6 @@
 
 use crate::random::Noise;
 
-/// Side of a texture, px: it repeats.
 const SIDE: usize = 512;
 
 #[derive(Clone, Debug)]

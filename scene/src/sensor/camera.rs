@@ -50,7 +50,6 @@ impl Eye {
         }
     }
 
-    /// Words about the hand and the object whenever an image is due and there is one before it.
     pub(crate) fn step(&mut self, t_s: f64, hand_mm: f64, object_mm: f64) -> Option<Seen> {
         while self.under_way.front().is_some_and(|seen| seen.arrives_s <= t_s) {
             self.arrived = self.under_way.pop_front();
@@ -79,7 +78,6 @@ impl Eye {
         self.arrived
     }
 
-    /// The words that arrived just now, if this camera teaches.
     pub(crate) fn teach(&mut self, t_s: f64) -> Option<Down> {
         let seen = self.unsent.take().filter(|_| self.parameters.teaches)?;
         let age_ms = ((t_s - seen.t_s) * 1e3).round() as u16;
@@ -92,8 +90,10 @@ mod tests {
     use super::*;
 
     fn words(hand_mm_s: f64, object_mm_s: f64) -> Vec<Seen> {
-        let mut eye =
-            Eye::new(&Camera { jitter_px: crate::file::quantity::Part::of(0.0), ..Camera::default() }, 1);
+        let mut eye = Eye::new(
+            &Camera { jitter_px: crate::file::quantity::Part::of(0.0), ..crate::file::plain("", "").camera },
+            1,
+        );
         (0..8_000)
             .filter_map(|n| {
                 let t_s = f64::from(n) / 8e3;

@@ -38,8 +38,8 @@ struct Fault {
 impl Faults {
     pub(crate) fn new(faults: &[SensorFault]) -> Self {
         let faults = faults.iter().map(|fault| {
-            let begin_s = fault.at_s.get_ref().get();
-            let end_s = fault.until_s.as_ref().map_or(f64::INFINITY, |until| until.get_ref().get());
+            let begin_s = fault.at_s.get();
+            let end_s = fault.until_s.as_ref().map_or(f64::INFINITY, |until| until.get());
             Fault {
                 span: Span { begin_s, end_s },
                 channel: fault.channel.get_ref().index(),

@@ -6,8 +6,8 @@ use tenax_hal_shim::front_end::{FSR_TILT, fsr_mv, fsr_quadrants_n};
 use super::front_end_v;
 use crate::file::sections::Fsr;
 use crate::physics::Touch;
-use crate::pole::LowPass;
 use crate::random::{Noise, Source};
+use crate::schedule::LowPass;
 
 /// The middle of a quadrant beside the pad's, mm: a quarter of 18 mm (Prosthesis, section 2).
 const QUADRANT_MM: f64 = 4.5;
@@ -72,7 +72,7 @@ mod tests {
 
     #[test]
     fn unloading_reads_more_than_loading_at_the_same_force() {
-        let mut quadrants = Quadrants::new(&Fsr::default(), 1);
+        let mut quadrants = Quadrants::new(&crate::file::plain("", "").fsr, 1);
         let loading = settled(&mut quadrants, 5.0);
         settled(&mut quadrants, 20.0);
         let unloading = settled(&mut quadrants, 5.0);
@@ -81,20 +81,21 @@ mod tests {
 
     #[test]
     fn a_load_beside_the_middle_reads_as_shear_and_a_gain_as_load() {
-        use crate::file::quantity::{Gain, Lever};
         let touch = Touch { normal_n: 8.0, shear_n: 1.0, ..Touch::default() };
-        let read = |fsr: Fsr, touch: &Touch| Quadrants::new(&fsr, 1).step(touch, [0.0; FSR_COUNT]);
-        let aside = Fsr { aside_mm: [Lever::of(1.125), Lever::of(0.0)], ..Fsr::default() };
+        let read = |then: &str, touch: &Touch| {
+            let fsr = crate::file::plain("", then).fsr;
+            Quadrants::new(&fsr, 1).step(touch, [0.0; FSR_COUNT])
+        };
+        let plain = read("", &touch);
         let sheared = Touch { shear_n: 3.0, ..touch };
-        assert_eq!(read(aside, &touch), read(Fsr::default(), &sheared));
-        let gains = [1.25, 1.0, 1.0, 1.0].map(|gain| Gain::try_from(gain).unwrap());
-        let [more, same, ..] = read(Fsr { gains, ..Fsr::default() }, &touch);
-        assert!(more > same && same == read(Fsr::default(), &touch)[1]);
+        assert_eq!(read("[fsr]\naside_mm = [1.125, 0]", &touch), read("", &sheared));
+        let [more, same, ..] = read("[fsr]\ngains = [1.25, 1, 1, 1]", &touch);
+        assert!(more > plain[0] && same == plain[1]);
     }
 
     #[test]
     fn a_lasting_load_creeps_up_and_the_unloaded_sensor_comes_back() {
-        let mut quadrants = Quadrants::new(&Fsr::default(), 1);
+        let mut quadrants = Quadrants::new(&crate::file::plain("", "").fsr, 1);
         let first = settled(&mut quadrants, 5.0);
         (0..2_000 * 20).for_each(|_| _ = settled(&mut quadrants, 5.0));
         let later = settled(&mut quadrants, 5.0);

@@ -8,8 +8,8 @@ use tenax_hal_shim::front_end::MYO_REST_MV;
 use super::front_end_v;
 use crate::file::sections::{ElectrodeLift, Myo};
 use crate::physics::wearer::Effort;
-use crate::pole::LowPass;
 use crate::random::{Noise, Source};
+use crate::schedule::LowPass;
 use crate::schedule::Span;
 
 pub(crate) const SIDES: usize = 2;
@@ -43,7 +43,7 @@ impl Envelopes {
         };
         let lifts = lifts.iter().map(|lift| {
             let side = lift.channel.get_ref().index() - MYO_FLEXOR;
-            (side, Span::of(&lift.at_s, lift.for_s), lift.pickup_mv.get())
+            (side, Span::of(lift.at_s, lift.for_s), lift.pickup_mv.get())
         });
         Self {
             parameters: parameters.clone(),
@@ -89,7 +89,8 @@ mod tests {
 
     #[test]
     fn an_envelope_rises_in_60_ms_and_the_other_side_stays_below_its_threshold() {
-        let quiet = Myo { mains_mv: crate::file::quantity::Millivolts::of(0.0), ..Myo::default() };
+        let quiet =
+            Myo { mains_mv: crate::file::quantity::Millivolts::of(0.0), ..crate::file::plain("", "").myo };
         let mut envelopes = Envelopes::new(&quiet, &[], 50.0, 1);
         let effort = Effort { flexor_mv: 1_000.0, ..Effort::default() };
         let (mut ten_s, mut ninety_s) = (None, None);

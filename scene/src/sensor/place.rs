@@ -68,13 +68,4 @@ mod tests {
         assert!((0.95..1.05).contains(&mean), "{mean}");
         assert!(places().all(|place| (place.slides(1.0) - 1.0).abs() < 1e-12 && place.slides(0.0) == 0.0));
     }
-
-    #[test]
-    fn what_is_heard_ring_by_ring_is_what_is_heard_at_once() {
-        for place in places().take(20) {
-            let rings = (0..24).map(|n| (f64::from(n) / 24.0, f64::from(n + 1) / 24.0));
-            let sum: f64 = rings.map(|(a, b)| place.hears_release(a, b) * (cube(b) - cube(a))).sum();
-            assert!((sum - place.hears_release(0.0, 1.0)).abs() < 1e-12);
-        }
-    }
 }

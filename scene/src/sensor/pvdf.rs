@@ -9,8 +9,8 @@ use super::front_end_v;
 use super::place::Place;
 use crate::file::sections::{Hum, Knock, Pvdf};
 use crate::physics::{TOUCH_N, Touch};
-use crate::pole::LowPass;
 use crate::random::{Noise, Seeds, Source};
+use crate::schedule::LowPass;
 use crate::schedule::{STEP_S, Span};
 
 /// A knock is forgotten after this many times its decay: e^-12 of millivolts is below any code.
@@ -84,7 +84,7 @@ impl Films {
         Self {
             parameters: parameters.clone(),
             knocks: knocks.to_vec(),
-            hums: hums.iter().map(|hum| (Span::of(&hum.at_s, hum.for_s), hum.clone())).collect(),
+            hums: hums.iter().map(|hum| (Span::of(hum.at_s, hum.for_s), hum.clone())).collect(),
             pitch_m: pitch_mm / 1e3,
             films,
             gains,
@@ -185,7 +185,7 @@ impl Films {
 
 impl Film {
     fn hears(&self, knock: &Knock) -> f64 {
-        let comes_from = (knock.at_s.get_ref().get() * 7.389).fract();
+        let comes_from = (knock.at_s.get() * 7.389).fract();
         1.0 + knock.uneven.get() * libm::cos(TAU * (self.phase - comes_from))
     }
 }
@@ -201,47 +201,15 @@ fn hum_mv(hum: &Hum, t_s: f64) -> f64 {
 
 fn rings(knock: &Knock, t_s: f64) -> bool {
     let decay_s = knock.decay_ms.get() / 1e3;
-    (0.0..KNOCK_DECAYS * decay_s).contains(&(t_s - knock.at_s.get_ref().get()))
+    (0.0..KNOCK_DECAYS * decay_s).contains(&(t_s - knock.at_s.get()))
 }
 
 pub(super) fn ring_mv(knock: &Knock, t_s: f64, phase: f64) -> f64 {
     if !rings(knock, t_s) {
         return 0.0;
     }
-    let since_s = t_s - knock.at_s.get_ref().get();
+    let since_s = t_s - knock.at_s.get();
     let decay_s = knock.decay_ms.get() / 1e3;
     let ring = libm::sin(TAU * (knock.ring_hz.get() * since_s + phase));
     knock.peak_mv.get() * libm::exp(-since_s / decay_s) * ring
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::file::quantity::Part;
-
-    fn made(film_decades: f64, making: u64) -> Films {
-        let parameters = Pvdf { film_decades: Part::of(film_decades), ..Pvdf::default() };
-        Films::new(&parameters, (&[], &[]), 1.0, Seeds { making, noise: 1 })
-    }
-
-    #[test]
-    fn gains_and_noises_are_drawn_over_the_decade_and_nothing_else_is() {
-        let (mut widest, mut together) = (0.0_f64, 0.0);
-        for seed in 0..50 {
-            let (alike, drawn) = (made(0.0, seed), made(1.0, seed));
-            assert_eq!(alike.noises, [1.0; PVDF_COUNT], "seed {seed}");
-            let apart: [f64; PVDF_COUNT] =
-                std::array::from_fn(|n| libm::log10(drawn.gains[n] / alike.gains[n]));
-            let noisy = drawn.noises.map(libm::log10);
-            assert!(apart.iter().chain(&noisy).all(|decades| decades.abs() <= 0.5), "seed {seed}");
-            let ends = apart.iter().fold([0.0_f64; 2], |[low, high], &at| [low.min(at), high.max(at)]);
-            widest = widest.max(ends[1] - ends[0]);
-            together += apart.iter().zip(&noisy).map(|(gain, noise)| gain * noise).sum::<f64>();
-            let phases = |films: &Films| films.films.map(|film| film.phase);
-            assert_eq!(phases(&alike), phases(&drawn), "seed {seed}");
-        }
-        assert!(widest > 0.9, "{widest} decades");
-        // A loud film is no noisier than another: 600 products of variance 1/144 have a sum with a deviation of 2.0.
-        assert!(together.abs() < 8.0, "{together}");
-    }
 }

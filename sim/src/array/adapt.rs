@@ -1,6 +1,4 @@
-//! A stranger's array: whether a network may judge it.
-//!
-//! A network has learned on arrays of some noise and refuses what lies outside of that: it would take it for slip or for rest.
+//! Whether a network may judge an array: one of another noise than it has learned on is refused.
 
 use std::collections::BTreeMap;
 
@@ -13,8 +11,7 @@ use crate::labelled::{Recording, Step};
 /// Factor below or above the learned noise from which a network refuses: the error of estimating it.
 const BEYOND: f64 = 1.1;
 
-/// How much readings of a recording differ from one to the next, as an rms over what the elements do apart, samples. The median
-/// over the steps: a slip for less than half of the time does not change it.
+/// Rms change from a reading to the next beyond what all elements do together, samples: the median over the steps.
 pub fn noise_samples(steps: &[Step]) -> f64 {
     let mut squares: Vec<f64> = steps
         .windows(2)

@@ -1,7 +1,5 @@
-//! The two edges of a verdict: the confidence at which slip begins, and the one at which it is over.
-//!
-//! Who begins to say slip only when sure and stays with it until it is unlikely gives few false alarms and still has most of a
-//! slip's steps right. With one edge for both, a confidence that trembles about it makes one alarm after the other.
+//! The two edges of a verdict: the confidence at which slip begins, and the one at which it is over. With one edge for both, a
+//! confidence that trembles about it makes one alarm after the other.
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -11,8 +9,7 @@ use super::pour::{Pour, pour};
 use crate::labelled::Recording;
 
 pub const FALSE_PER_HOUR_MAX: f64 = 60.0;
-/// False steps in 2800: the paper's 36 with a fifth of it left for sessions that are not those that edges are chosen on. A verdict
-/// that stands when nothing slips any more closes the hand further.
+/// False steps in 2800: the paper's 36, less a fifth for sessions that edges are not chosen on.
 pub const FALSE_2800_MAX: f64 = 29.0;
 /// Confidences that are tried for the first edge and for the second, per mille.
 const ON: std::ops::Range<u16> = 500..1_000;
@@ -35,8 +32,7 @@ pub struct Chosen {
     pub pour: Pour,
 }
 
-/// The edges with the best balanced accuracy at no more than [`FALSE_PER_HOUR_MAX`] and [`FALSE_2800_MAX`], and their scores. None
-/// if there is nothing to choose by, or no edges are so quiet.
+/// The edges with the best balanced accuracy below both limits, and their scores. None if there are none.
 pub fn choose(pours: &[(&Recording, Confidences)]) -> Option<Chosen> {
     let all: Vec<Edges> = ON
         .step_by(STEP)

@@ -25,8 +25,7 @@ pub struct Material {
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Contact {
-    /// The way over which all contacts under an element are new ones, um: single contacts on polymers are some micrometres to
-    /// some tens wide (Dieterich and Kilgore 1994).
+    /// Slip that renews all contacts under an element, um: single ones are some to some tens wide (Dieterich and Kilgore 1994).
     pub renews_um: Ends,
     pub slip_part: Ends,
     pub rim_part: Ends,

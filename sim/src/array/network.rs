@@ -37,12 +37,9 @@ pub struct Saved {
     pub noise_samples: [f64; 2],
 }
 
-/// The firmware's model, with the covariance's shipped window.
-type OwnModel = Model<COVARIANCE_WINDOW>;
-
 #[derive(Clone, Debug)]
 pub struct Network {
-    model: Box<OwnModel>,
+    model: Box<Model>,
     pub noise_samples: [f64; 2],
 }
 
@@ -100,7 +97,7 @@ impl Network {
 }
 
 impl Saved {
-    fn model(&self) -> anyhow::Result<OwnModel> {
+    fn model(&self) -> anyhow::Result<Model> {
         let too_large = |_| anyhow!("a sum of the network could overflow");
         let (first, second, last) = (&self.first, &self.second, &self.last);
         Ok(Model {
@@ -120,8 +117,6 @@ impl Saved {
                 logit_per_nat: self.logit_per_nat,
                 on_permille: self.edges.on_permille,
                 off_permille: self.edges.off_permille,
-                on_frames: 1,
-                off_frames: 1,
             },
         })
     }

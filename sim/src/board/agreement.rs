@@ -5,7 +5,7 @@ use std::fmt;
 
 use tenax_hal_shim::channel::{FRAMES_PER_SLOW_FRAME, SCANS_PER_FRAME};
 use tenax_hal_shim::detector::DetectorSet;
-use tenax_hal_shim::frame::{Frame, Scan};
+use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::motor::Duty;
 use tenax_hal_shim::schedule::{Job, slot_of};
 use tenax_hal_shim::wire::{Answer, Down, Event, EventKind, Received, Slow, Up};
@@ -14,7 +14,7 @@ use tenax_logic::arming::DEBOUNCE_FRAMES;
 use tenax_logic::device::Device;
 
 use super::Run;
-use super::kept::device;
+use super::kept::Provision;
 
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Said {
@@ -36,22 +36,17 @@ impl Said {
     }
 }
 
-/// Puts codes that were recorded on any board through the host's build of the logic.
-///
-/// `device` is the board as it was before the start ([`kept::device`](super::kept::device)), `pressed` the frames in which it
-/// took a press of the button. `commands` are those that the board took, in order, each with the sequence number of the
-/// frame before whose tick it took it. No frame may have been lost. Scans that do not fill a frame are left out.
-pub fn host_says(
-    scans: &[Scan],
-    device: Device,
-    pressed: &[u32],
-    commands: &[(u32, Received<Down>)],
-) -> Said {
-    let (frames, _) = scans.as_chunks::<SCANS_PER_FRAME>();
+/// The host's decisions on a run's codes and commands. Scans that do not fill a frame are left out.
+pub fn host_says(run: &Run) -> Said {
+    let (frames, _) = run.scans.as_chunks::<SCANS_PER_FRAME>();
     let frames = (0..).zip(frames).map(|(sequence, scans)| Frame::from_scans(sequence, scans));
-    host_decides(frames, device, pressed, commands)
+    let provision =
+        Provision { trusts_line: run.trusts_line, calibrated: run.calibrated, ..Provision::default() };
+    host_decides(frames, provision.device(), &presses(&run.events), &run.taken)
 }
 
+/// Puts frames of any board, none of them lost, through the host's build of the logic: `device` as it was before the start, the frames of
+/// each press of the button, and each command with the frame before whose tick it was taken.
 pub fn host_decides(
     frames: impl Iterator<Item = Frame>,
     mut device: Device,
@@ -66,15 +61,16 @@ pub fn host_decides(
             said.take(device.command(command));
         }
         device
+            .fingertip
             .button(pressed.iter().any(|at| (at - at.min(&(DEBOUNCE_FRAMES - 1))..=*at).contains(&sequence)));
         device.tick(&frame);
         if frame.slot() == slot_of(Job::Save) {
-            let duty = device.feedback();
+            let duty = device.fingertip.feedback();
             if said.feedback.last().map_or(Duty::default(), |last| last.1) != duty {
                 said.feedback.push((sequence, duty));
             }
         }
-        let fingertip = device.fingertip();
+        let fingertip = &device.fingertip;
         said.slip_and_warning.push([fingertip.slip(), fingertip.incipient()]);
         std::iter::from_fn(|| device.next_message()).for_each(|message| said.take(message));
     }
@@ -88,36 +84,31 @@ pub fn presses(events: &[Event]) -> Vec<u32> {
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Agreement {
-    slows: usize,
-    events: usize,
-    commands: usize,
-    networks: usize,
-    feedback: usize,
+    compared: String,
     difference: Option<String>,
 }
 
 impl Agreement {
-    /// Of a run and the host's logic. The run must have lost no frame and not restarted.
+    /// Between a run, which must have lost no frame and not restarted, and the host's logic.
     pub fn of(run: &Run) -> Self {
         Self::with_host(run).0
     }
 
     pub fn with_host(run: &Run) -> (Self, Said) {
-        let host = host_says(
-            &run.scans,
-            device(run.trusts_line, run.calibrated.as_ref()),
-            &presses(&run.events),
-            &run.taken,
-        );
-        let agreement = Self {
-            slows: run.slows.len(),
-            events: run.events.len(),
-            commands: run.taken.len(),
-            networks: run.networks().count(),
-            feedback: run.feedback.len(),
-            difference: difference(run, &host),
-        };
-        (agreement, host)
+        let host = host_says(run);
+        let (slows, networks) = (run.slows.len(), run.networks().count());
+        let ticks = slows * usize::from(FRAMES_PER_SLOW_FRAME);
+        let mut compared = format!("{slows} slow frames with {ticks} ticks, {} events", run.events.len());
+        for (count, what) in [
+            (run.taken.len(), format!("{} commands' answers", run.taken.len())),
+            (networks, format!("the network {networks} times")),
+            (run.feedback.len(), format!("the vibration motor's {} steps", run.feedback.len())),
+        ] {
+            if count > 0 {
+                compared += &format!(", {what}");
+            }
+        }
+        (Self { compared, difference: difference(run, &host) }, host)
     }
 
     pub const fn holds(&self) -> bool {
@@ -127,21 +118,10 @@ impl Agreement {
 
 impl fmt::Display for Agreement {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if let Some(difference) = &self.difference {
-            return write!(f, "DIFFERS: {difference}");
+        match &self.difference {
+            Some(difference) => write!(f, "DIFFERS: {difference}"),
+            None => write!(f, "{}, equal", self.compared),
         }
-        let ticks = self.slows * usize::from(FRAMES_PER_SLOW_FRAME);
-        write!(f, "{} slow frames with {ticks} ticks, {} events", self.slows, self.events)?;
-        if self.commands > 0 {
-            write!(f, ", {} commands' answers", self.commands)?;
-        }
-        if self.networks > 0 {
-            write!(f, ", the network {} times", self.networks)?;
-        }
-        if self.feedback > 0 {
-            write!(f, ", the vibration motor's {} steps", self.feedback)?;
-        }
-        f.write_str(", equal")
     }
 }
 
@@ -167,8 +147,13 @@ fn difference(run: &Run, host: &Said) -> Option<String> {
         })
 }
 
-/// Where two lists begin to differ, of which the image's has at least `due`.
-fn first<T: PartialEq + fmt::Debug>(what: &str, image: &[T], host: &[T], due: usize) -> Option<String> {
+/// The first difference of two lists, of which the board's has at least `due` entries.
+pub(crate) fn first<T: PartialEq + fmt::Debug>(
+    what: &str,
+    image: &[T],
+    host: &[T],
+    due: usize,
+) -> Option<String> {
     if let Some((n, (image, host))) =
         image.iter().zip(host).enumerate().find(|(_, (image, host))| image != host)
     {

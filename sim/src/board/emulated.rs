@@ -1,57 +1,48 @@
 //! The emulated board: the real image, instruction by instruction, with a plant at its pins.
 
-mod commands;
 pub(crate) mod cost;
 pub mod coupling;
+mod flash;
+mod line;
 mod mishaps;
+mod nucleo;
 pub(crate) mod wires;
 mod world;
-
-pub use crate::board_model::Models;
 
 use std::num::NonZeroU64;
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError, mpsc};
 use std::time::Instant;
 
-use crate::board_model::flash::FlashArray;
-use crate::board_model::line::Line;
-use crate::board_model::nucleo::Nucleo;
 use anyhow::{Context, Result, anyhow};
 use rigless::emulator::{self, Finished, Start, Watch};
 use rigless::image::Image;
 use rigless::session::Session;
 use rigless::time::VirtualNanos;
+use tenax_frames::link::Inbox;
 use tenax_hal_shim::channel::{SCAN_HZ, SCANS_PER_FRAME};
 use tenax_scene::plant::Plant;
 
-use self::cost::CostMeter;
 use self::coupling::Coupling;
-use self::mishaps::Mishaps;
+use self::nucleo::Nucleo;
 use self::world::{Stretch, World};
 use super::kept::{Provision, Sectors};
-use super::line_log::LineLog;
 use super::simulated::frames_in;
-use super::{FlashUse, Recorder, Run, Summary};
+use super::{FlashUse, Recorder, Summary};
 use crate::image::symbols::Symbols;
 
 #[derive(Clone, Debug)]
 pub struct Options {
-    /// Instructions that the core executes in a second. At 100 MHz a Cortex-M4 takes one to two cycles for most, so
-    /// 100 and 50 millions are the ends of the bracket.
+    /// Instructions a second: 100 and 50 millions are the ends of the bracket, at one to two cycles each and 100 MHz.
     pub instructions_per_second: NonZeroU64,
     /// What goes wrong on the way, and when, s.
     pub mishaps: Vec<(f64, Mishap)>,
-    /// What the flash holds beside the image before the start: an address and the bytes from there on. None is a new chip, on
-    /// which a plant that trusts its line has set so before.
+    /// Contents of the flash beside the image: an address, and the bytes from there on. None: as the plant was set up.
     pub flash: Option<(u64, Vec<u8>)>,
-    /// How long the flash takes to program a word, us; the core stands still for as long. 16 typically, 100 at most
-    /// (DS10314, flash memory programming).
+    /// Time to program a word, us, in which the core stands still: 16 typically, 100 at most (DS10314).
     pub word_us: u64,
     /// What the bridge's edges leave in the films' codes. None: nothing.
     pub coupling: Option<Coupling>,
-    pub models: Models,
-    pub ticks: Option<mpsc::Sender<Tick>>,
 }
 
 impl Default for Options {
@@ -62,19 +53,10 @@ impl Default for Options {
             flash: None,
             word_us: 16,
             coupling: None,
-            models: Models::Quick,
-            ticks: None,
         }
     }
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Tick {
-    pub at_ns: u64,
-    pub instruction_count: u64,
-}
-
-/// Something that a board must survive.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Mishap {
     /// The converter's DMA stream switches off: the converter overruns.
@@ -84,9 +66,7 @@ pub enum Mishap {
     /// The converter's DMA stream is sent where nothing is: its driver panics.
     DmaFails,
     /// The power goes for an instant while the flash programs the word after the next `words`.
-    PowerFails {
-        words: u32,
-    },
+    PowerFails(u32),
     BrownsOut,
     /// From now on the supply is so high, mV: the voltage detector says if it is too low. A brown-out's reset is not drawn by it.
     SupplyIs(u32),
@@ -97,33 +77,8 @@ pub enum Mishap {
     BridgeIsOff(bool),
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub enum Broken {
-    #[error(
-        "the image drove both sides of the motor bridge at {at_s} s: on a real board this shorts the supply"
-    )]
-    BothSides { at_s: f64 },
-    #[error("the image had not begun to scan three seconds after its start")]
-    NeverScanned,
-}
-
-/// Boots `image`, runs the plant to its end and keeps everything.
-///
-/// `progress` is told the virtual time now and then, s.
+/// Boots `image` and runs the plant to its end; `recorder` is told of it as it goes, `progress` the virtual time now and then, s.
 /// Fails if the image cannot be read or placed, or what it does would destroy a real board.
-pub fn run<P: Plant + 'static>(
-    image: &Path,
-    plant: P,
-    options: &Options,
-    progress: &mut dyn FnMut(f64),
-) -> Result<(Run, P)> {
-    let mut run = Run::default();
-    let (summary, plant) = record(image, plant, options, &mut run, progress)?;
-    run.summary = summary;
-    Ok((run, plant))
-}
-
-/// Boots `image` and runs the plant to its end; `recorder` is told of it as it goes. Fails as [`run`] does.
 pub fn record<P: Plant + 'static>(
     image: &Path,
     plant: P,
@@ -154,42 +109,36 @@ fn closed_loop(
         provision.calibrated = None;
     }
     let (sender, reports) = mpsc::channel();
-    let cost = CostMeter::new(&symbols, options.ticks.clone());
-    let [tick, after_tick] = cost.watched();
-    let mishaps = Mishaps::new(&options.mishaps);
-    let flash = FlashArray::new(1_000 * options.word_us);
-    let watched = [tick, after_tick, symbols.command];
-    let mut world = World::new(plant, frames, mishaps, cost, flash, &symbols, sender);
-    world.coupling = options.coupling;
+    let world = World::new(plant, frames, options, &symbols, sender);
+    let watched = [symbols.tick, symbols.after_tick, symbols.command];
     let mut images =
         vec![Image::read(image, None).context("reading the image")?, cost::paint(&symbols.stack)?];
-    let kept = Sectors::provisioned(&provision).image();
-    if let Some((address, bytes)) = options.flash.clone().or(Some(kept)) {
-        images.push(Image::new(Path::new("flash"), bytes, Some(address))?);
-    }
-    let (models, rate) = (options.models, options.instructions_per_second);
+    let kept = || Sectors::provisioned(&provision).image();
+    let (address, bytes) = options.flash.clone().unwrap_or_else(kept);
+    images.push(Image::new(Path::new("flash"), bytes, Some(address))?);
+    let rate = options.instructions_per_second;
 
     // The emulator keeps its driver for itself, so it runs on a thread of its own and reports to this one.
-    let (mut heard, mut log, mut scanned) = (Summary::default(), LineLog::new(frames), 0);
+    let (mut heard, mut inbox, mut scanned) = (Summary::default(), Inbox::default(), 0);
     let finished = std::thread::scope(|scope| {
-        let emulator = scope.spawn(move || execute(&images, models, rate, watched, world));
+        let emulator = scope.spawn(move || execute(&images, rate, watched, world));
         for Stretch { scans, line } in reports {
             scanned += scans.len();
             for (codes, drive, slipping) in scans {
                 recorder.scan(&codes, drive, slipping);
             }
-            log.hear(&line, &mut heard, recorder);
+            heard.hear(&mut inbox, &line, frames, recorder);
             progress(scanned as f64 / f64::from(SCAN_HZ));
         }
         emulator.join().map_err(|_| anyhow!("the emulator panicked; its message is above"))?
     })?;
 
-    let world = finished.driver;
+    let mut world = finished.driver;
     if let Some(broken) = world.broken {
-        return Err(broken.into());
+        return Err(broken);
     }
     // What the last scans led to had time to come up the line; what came after them was no part of the run.
-    let mut taken = world.commands.taken(&heard.answers);
+    let mut taken = world.taken(&heard.answers);
     taken.retain(|(before, _)| *before < frames);
     // What a frame decides is on the pin in the scans of the next.
     let frame_of = |scan: usize| (scan / SCANS_PER_FRAME).saturating_sub(1) as u32;
@@ -210,12 +159,11 @@ fn closed_loop(
 
 fn execute(
     images: &[Image],
-    models: Models,
     rate: NonZeroU64,
     watched: [u64; 3],
     world: World,
 ) -> Result<Finished<Nucleo, World>> {
-    let board = Nucleo::new(models, rate, Line::default())?;
+    let board = Nucleo::new(rate)?;
     let mut session = Session::new(Box::new(board), 0, VirtualNanos(1))?;
     for address in watched {
         session.watch(Watch::Instruction(address));

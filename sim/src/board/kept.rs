@@ -1,5 +1,4 @@
-//! What a board holds before the start when somebody has set it up: whether its line is trusted, and the calibration to the
-//! wearer of what is played. In flash for the emulated board, in the device for the host's.
+//! Records that a board holds before the start: whether its line is trusted, and the calibration to the wearer of what is played.
 
 use anyhow::Context;
 use tenax_hal_shim::flash::{BLANK, FlashArea, FlashFailed, Sector};
@@ -68,10 +67,6 @@ impl Provision {
     }
 }
 
-pub fn device(trusts_line: bool, calibrated: Option<&EmgModel>) -> Device {
-    Provision { trusts_line, calibrated: calibrated.copied(), ..Provision::default() }.device()
-}
-
 #[derive(Clone, Debug)]
 pub struct Sectors(pub Vec<u32>);
 
@@ -80,7 +75,6 @@ impl Sectors {
         Self(vec![BLANK; 2 * SECTOR_WORDS])
     }
 
-    /// With one more record. It must have room.
     pub fn saving(mut self, kept: Kept, payload: &[u8]) -> Self {
         let (mut log, _) = open(&mut self, Erase::Allowed);
         let mut saving = log.begin(kept, payload).expect("room");
@@ -93,10 +87,8 @@ impl Sectors {
     }
 
     pub fn provisioned(provision: &Provision) -> Self {
-        provision
-            .records()
-            .iter()
-            .fold(Self::blank(), |sectors, (kept, payload)| sectors.saving(*kept, payload))
+        let save = |sectors: Self, (kept, payload): &(Kept, Vec<u8>)| sectors.saving(*kept, payload);
+        provision.records().iter().fold(Self::blank(), save)
     }
 }
 

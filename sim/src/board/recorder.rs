@@ -19,26 +19,6 @@ pub trait Recorder {
 
 impl Recorder for () {}
 
-impl<R: Recorder> Recorder for Option<R> {
-    fn scan(&mut self, codes: &Scan, drive: MotorDrive, slipping: bool) {
-        if let Some(recorder) = self {
-            recorder.scan(codes, drive, slipping);
-        }
-    }
-
-    fn slow(&mut self, slow: &Slow) {
-        if let Some(recorder) = self {
-            recorder.slow(slow);
-        }
-    }
-
-    fn line(&mut self, bytes: &[u8]) {
-        if let Some(recorder) = self {
-            recorder.line(bytes);
-        }
-    }
-}
-
 impl<A: Recorder + ?Sized, B: Recorder + ?Sized> Recorder for (&mut A, &mut B) {
     fn scan(&mut self, codes: &Scan, drive: MotorDrive, slipping: bool) {
         self.0.scan(codes, drive, slipping);

@@ -1,6 +1,4 @@
-//! The host's own build of the logic, wired to a plant directly: no converter, no core.
-//!
-//! Its timing is the image's: what a frame decides drives the plant from the next scan on. So is its line, byte for byte but
+//! The host's own build of the logic, wired to a plant directly: no converter, no core. Its timing and its line are the image's, but
 //! for what [`uplink`] says.
 
 mod ahead;
@@ -33,9 +31,7 @@ pub enum Grips {
     Constant(f64),
 }
 
-/// Runs the plant to its end under the fingertip and keeps everything.
-///
-/// `progress` is told the virtual time now and then, s.
+/// Runs the plant to its end and keeps everything. `progress` is told the virtual time now and then, s.
 pub fn run<P: Plant>(plant: P, progress: &mut dyn FnMut(f64)) -> (Run, P) {
     let mut run = Run::default();
     let (summary, plant) = record(plant, &mut run, progress);
@@ -77,13 +73,13 @@ fn closed_loop(
     };
     let mut up = Uplink::new(&mut summary, recorder);
     up.post(device.start(Identity::default()));
-    if device.fingertip().config().stream_at_start {
+    if device.fingertip.config().stream_at_start {
         for (kept, payload) in provision.records() {
             up.post(Up::Restored(Restored::of(kept, &payload).expect("it has room for every record")));
         }
     }
     let mut down = Downlink::default();
-    device.fingertip_mut().act_on(match grips {
+    device.fingertip.act_on(match grips {
         Grips::Reflex(detectors) => detectors,
         Grips::Bound | Grips::Constant(_) => DetectorSet::NONE,
     });
@@ -98,11 +94,11 @@ fn closed_loop(
             *scan = scan_of_pins(&plant.scan(drive).codes(), select);
             commands.extend(plant.commands().into_iter().map(|message| down.number(message)));
             down.take(&plant.line_bytes());
-            up.recorder().scan(scan, drive, plant.slipping());
+            up.recorder.scan(scan, drive, plant.slipping());
         }
         commands.extend(down.command(sequence));
         for command in &commands {
-            up.summary().taken.push((sequence, *command));
+            up.summary.taken.push((sequence, *command));
             if let Some(message) = device.taken(command) {
                 up.post(message);
             }
@@ -112,13 +108,13 @@ fn closed_loop(
             }
             up.post(answer);
         }
-        device.button(plant.button());
+        device.fingertip.button(plant.button());
         let frame = Frame::from_scans(sequence, &scans);
         drive = device.tick(&frame);
         drive = match grips {
             Grips::Reflex(_) => drive,
-            Grips::Bound => ahead.drive(drive, device.fingertip(), plant.planned()),
-            Grips::Constant(target_n) => ahead.drive(drive, device.fingertip(), plant.closing_to(target_n)),
+            Grips::Bound => ahead.drive(drive, &device.fingertip, plant.planned()),
+            Grips::Constant(target_n) => ahead.drive(drive, &device.fingertip, plant.closing_to(target_n)),
         };
         while let Some(message) = device.next_message() {
             up.post(message);
@@ -135,9 +131,9 @@ fn closed_loop(
         }
         if frame.slot() == slot_of(Job::Save) {
             device.slow_frame_passed();
-            let duty = device.feedback();
+            let duty = device.fingertip.feedback();
             plant.vibrate(duty);
-            up.summary().vibrates(sequence, duty);
+            up.summary.vibrates(sequence, duty);
             if store.is_free()
                 && let Some(record) = device.next_record()
             {
@@ -162,7 +158,6 @@ pub(crate) fn seconds_of(frames: u32) -> f64 {
     f64::from(frames) * SCANS_PER_FRAME as f64 / f64::from(SCAN_HZ)
 }
 
-/// Whole frames in `duration_s`.
 pub(crate) fn frames_in(duration_s: f64) -> u32 {
     (duration_s * f64::from(SCAN_HZ) / SCANS_PER_FRAME as f64) as u32
 }

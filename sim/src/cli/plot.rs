@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use anyhow::Context;
 
-use crate::plot::draw;
+use crate::plot::sheet::draw;
 use crate::session;
 use tenax_frames::link::captured::line_of;
 use tenax_frames::tool::out;

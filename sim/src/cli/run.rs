@@ -1,7 +1,7 @@
 //! `tenax run`: a scene or a recording on a board; report and figure.
 
 use std::fs;
-use std::io::{self, IsTerminal};
+use std::io::{self, BufWriter, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::mpsc::Receiver;
@@ -12,13 +12,13 @@ use clap::ArgGroup;
 use tenax_scene::act::KEYS;
 use tenax_scene::{SceneFile, builtin};
 
-use super::line_file::LineFile;
 use crate::again;
+use crate::board::Recorder;
 use crate::live::{Live, Person, Use};
-use crate::plot::draw;
-use crate::replay::{self, calibrate};
+use crate::plot::sheet::draw;
+use crate::replay;
 use crate::report::text::Text;
-use crate::session::{self, Board, Outcome};
+use crate::session::{self, Board};
 use tenax_frames::link::captured::is_recording;
 use tenax_frames::record::Recording;
 use tenax_frames::serve::{self, Down, Server};
@@ -61,9 +61,6 @@ pub struct Args {
     /// Recipe that maps the recording's columns to pins: a file, or a name in recipes/ [default: by the recording's name]
     #[arg(long, value_name = "FILE.toml|NAME", requires = "replay")]
     recipe: Option<String>,
-    /// First calibrate the myosensors with these three recordings [default: not calibrated]
-    #[arg(long, value_name = "REST.csv,CLOSE.csv,OPEN.csv", value_delimiter = ',', requires = "replay")]
-    calibrate_emg: Option<Vec<PathBuf>>,
     /// Also run the scene's controls on the PC: no reflex, a constant grip of the same mean force, each detector alone, all but
     /// one
     #[arg(long, conflicts_with = "replay")]
@@ -113,10 +110,6 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         Some(path) => Subject::Recording(path, replay::library::read(path, args.recipe.as_deref())?.0),
         None => Subject::Scene(Box::new(session::load_scene(&args.scene)?)),
     };
-    let recordings = args.calibrate_emg.as_deref();
-    let calibrated = recordings
-        .map(|recordings| calibrate::calibrate(recordings, args.recipe.as_deref(), args.seed))
-        .transpose()?;
     let name = match &subject {
         Subject::Recording(path, _) => session::name_of(path),
         Subject::Scene(file) => file.name.clone(),
@@ -130,21 +123,21 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     if let Some(server) = &mut server {
         listen(&person, server.take_acts(), resets(args));
     }
-    let live = down.as_ref().map(|down| live_of(down, &person));
-    if let (true, Subject::Scene(file), Some(server), Some(down)) =
-        (args.repeat, &subject, &mut server, &down)
-    {
-        return again_and_again(file, args.seed, &board, server, &person, &|| live_of(down, &person));
+    let live = || down.as_ref().map(|down| Live::new(down.clone(), person.clone()));
+    if let (true, Subject::Scene(file), Some(server)) = (args.repeat, &subject, &mut server) {
+        return again_and_again(file, args.seed, &board, server, &person, &live);
     }
     let mut recording = args.record.as_deref().map(Recording::create).transpose()?;
-    let line_use = Use { live, streams_at_start: recording.is_some() };
-    let recorder = &mut (&mut (&mut line, &mut server), &mut recording);
+    let line_use = Use { live: live(), streams_at_start: recording.is_some() };
+    let (mut no_server, mut no_recording) = ((), ());
+    let to_server = server.as_mut().map_or::<&mut dyn Recorder, _>(&mut no_server, |own| own);
+    let to_recording = recording.as_mut().map_or::<&mut dyn Recorder, _>(&mut no_recording, |own| own);
+    let recorder = &mut (&mut (&mut line, to_server), to_recording);
     let outcome = match &subject {
         Subject::Recording(file, recording) => {
             let progress = Progress::new("replay", recording.duration_s());
-            let options =
-                session::ReplayOptions { recipe: args.recipe.as_deref(), calibrated, line: line_use };
-            session::replay_served(file, options, args.seed, &board, recorder, &mut |s| progress.at(s))?
+            let (recipe, seed) = (args.recipe.as_deref(), args.seed);
+            session::replay_served(file, recipe, line_use, seed, &board, recorder, &mut |s| progress.at(s))?
         }
         Subject::Scene(file) => {
             let progress = Progress::new(&format!("scene {}", file.name), file.duration_s());
@@ -159,7 +152,13 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     if let Some(server) = server {
         out::note!("  {:<14}{}", "served", server.close());
     }
-    let mut files = write(&outcome, &path)?;
+    let svg = draw::svg(&outcome.figure)?.into_bytes();
+    let mut files = Vec::new();
+    for (extension, bytes) in [("svg", svg), ("json", serde_json::to_vec_pretty(&outcome.report)?)] {
+        let path = path(extension);
+        fs::write(&path, bytes).with_context(|| format!("cannot write {}", path.display()))?;
+        files.push(path);
+    }
     if let (Some(recording), Some(path)) = (recording, &args.record) {
         recording.finish().with_context(|| format!("cannot write {}", path.display()))?;
         files.push(path.clone());
@@ -208,12 +207,6 @@ fn served(args: &Args) -> anyhow::Result<Option<(Server, Down)>> {
         out::note!("telling what really happens on {place}");
     }
     Ok(Some((server, down)))
-}
-
-fn live_of(down: &Down, person: &Person) -> Live {
-    let slow =
-        |part| out::note!("the board is slower than real time: it runs, and is served, at {part:.2} of it");
-    Live::new(down.clone(), slow).with_person(person.clone())
 }
 
 /// The line that presses the button, and what that is for a person.
@@ -276,10 +269,10 @@ fn again_and_again(
     board: &Board,
     server: &mut Server,
     person: &Person,
-    live: &dyn Fn() -> Live,
+    live: &dyn Fn() -> Option<Live>,
 ) -> anyhow::Result<ExitCode> {
     for seed in seed.. {
-        let line = Use { live: Some(live()), streams_at_start: false };
+        let line = Use { live: live(), streams_at_start: false };
         let outcome = session::scene_alone(file, seed, board, line, server)?;
         let fate = if outcome.truth.dropped { "DROPPED" } else { "kept" };
         let how = if person.lets_go() { "is reset" } else { "is switched on anew" };
@@ -288,21 +281,36 @@ fn again_and_again(
     Ok(ExitCode::SUCCESS)
 }
 
-/// What is run.
+/// The serial line's bytes, written to a file as they come, until the first error.
+struct LineFile {
+    path: PathBuf,
+    file: io::Result<BufWriter<fs::File>>,
+}
+
+impl LineFile {
+    fn create(path: PathBuf) -> Self {
+        Self { file: fs::File::create(&path).map(BufWriter::new), path }
+    }
+
+    /// Fails if the bytes could not be written.
+    fn close(self) -> anyhow::Result<PathBuf> {
+        let flushed = self.file.and_then(|mut file| file.flush());
+        flushed.with_context(|| format!("cannot write {}", self.path.display()))?;
+        Ok(self.path)
+    }
+}
+
+impl Recorder for LineFile {
+    fn line(&mut self, bytes: &[u8]) {
+        if let Ok(file) = &mut self.file
+            && let Err(error) = file.write_all(bytes)
+        {
+            self.file = Err(error);
+        }
+    }
+}
+
 enum Subject<'a> {
     Recording(&'a Path, replay::Recording),
     Scene(Box<SceneFile>),
-}
-
-/// Writes figure and report, and says where.
-fn write(outcome: &Outcome, path: &dyn Fn(&str) -> PathBuf) -> anyhow::Result<Vec<PathBuf>> {
-    let svg = draw::svg(&outcome.figure)?;
-    let contents = [("svg", svg.into_bytes()), ("json", serde_json::to_vec_pretty(&outcome.report)?)];
-    let mut files = Vec::new();
-    for (extension, bytes) in contents {
-        let path = path(extension);
-        fs::write(&path, bytes).with_context(|| format!("cannot write {}", path.display()))?;
-        files.push(path);
-    }
-    Ok(files)
 }

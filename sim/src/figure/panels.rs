@@ -1,7 +1,6 @@
-//! The panels of a run, from top to bottom: forces, Ft/Fn and S2, vibration and S1, what each detector says, muscles and gate,
-//! motor and mode. Thresholds are those in force: a command of the scene or of a person changes them.
+//! The panels of a run: forces, Ft/Fn, vibration, detectors, muscles, motor and mode, with the thresholds in force.
 
-use plotters::style::RGBColor;
+use plotters::style::{Color, RGBColor};
 use tenax_hal_shim::detector::DetectorId;
 use tenax_hal_shim::wire::{Down, EventKind};
 use tenax_hal_shim::words::{DriveSource, GripMode};
@@ -9,47 +8,75 @@ use tenax_logic::config::Config;
 use tenax_logic::setting::SettingId;
 
 use super::sketch::{Drive, Needs, Sketch};
-use crate::plot::figure::{Curve, Figure, Level, Panel, Stretch, colour};
+use crate::plot::figure::colour;
+use crate::plot::sheet::{Axis, Band, Mark, Panel, Series, Sheet};
 use crate::plot::thin::{Thin, thin};
 use crate::report::Subject;
 
-pub fn figure(subject: &Subject, sketch: Sketch) -> Figure {
-    let span_s = sketch.span_s();
-    let slips = subject.truth.map_or_else(Vec::new, |truth| {
-        joined(truth.slips.iter().map(|slip| (slip.micro_onset_s, slip.end_s.min(span_s.1))), span_s)
-    });
-    let strip = modes(subject, sketch.first_mode, sketch.end_s().unwrap_or(span_s.1), span_s);
-    let Sketch { forces: drawn, needs, ratio, s2, vibration, muscles: envelopes, motor: drives, .. } = sketch;
-    Figure {
-        title: subject.scene.to_owned(),
-        subtitle: match subject.board {
-            "recorded" => "recorded".to_owned(),
-            board => format!("{board} board, seed {}", subject.seed),
-        },
-        span_s,
-        slips,
-        panels: vec![
-            forces(drawn, needs),
-            Panel {
-                label: "Ft/Fn".to_owned(),
-                curves: vec![curve("Ft/Fn", colour::BLUE, ratio)],
-                levels: vec![Level { name: "S2".to_owned(), points: s2.points() }],
-                at_least: (0.0, 0.5),
-                height: 1.0,
-                ..Panel::default()
-            },
-            Panel {
-                label: "vibration, mV".to_owned(),
-                curves: vec![curve("PVDF envelope", colour::BLUE, vibration)],
-                levels: vec![in_force("S1", SettingId::S1, subject, span_s)],
-                at_least: (0.0, 150.0),
-                height: 1.0,
-                ..Panel::default()
-            },
-            detectors(subject, span_s),
-            muscles(envelopes, in_force("gate", SettingId::EmgOn, subject, span_s)),
-            motor(drives, strip),
-        ],
+const LEVEL: RGBColor = colour::VERMILLION;
+const SLIP: RGBColor = colour::PURPLE;
+/// Modes' place in the motor's panel, %.
+const STRIP: (f64, f64) = (-150.0, -125.0);
+
+pub fn figure(subject: &Subject, sketch: Sketch) -> Sheet {
+    let span_s = sketch.span_s;
+    let strip = modes(subject, sketch.first_mode, sketch.end_s.unwrap_or(span_s.1), span_s);
+    let Sketch { forces, needs, ratio, s2, vibration, muscles, motor: drives, .. } = sketch;
+    let in_force = |name, id| in_force(name, id, subject, span_s);
+    let [normal, shear] = forces;
+    let mut forces = Vec::new();
+    if let Some(Needs { grip, needed }) = needs {
+        forces.push(curve("grip force", colour::BLUE, grip));
+        forces.push(curve("needed to hold", colour::VERMILLION, needed));
+    }
+    forces.push(curve("Fn as measured", colour::SKY, normal));
+    forces.push(curve("Ft as measured", colour::ORANGE, shear));
+    let ratio =
+        vec![curve("Ft/Fn", colour::BLUE, ratio), Series::new("S2", LEVEL, Mark::Dashes, s2.points())];
+    let vibration = vec![curve("PVDF envelope", colour::BLUE, vibration), in_force("S1", SettingId::S1)];
+    let [flexor, extensor] = muscles;
+    let (flexor, extensor) =
+        (curve("flexor", colour::GREEN, flexor), curve("extensor", colour::ORANGE, extensor));
+    let muscles = vec![flexor, extensor, in_force("gate", SettingId::EmgOn)];
+    let mut panels = vec![
+        panel("force, N", forces, (0.0, 1.0), span_s),
+        panel("Ft/Fn", ratio, (0.0, 0.5), span_s),
+        panel("vibration, mV", vibration, (0.0, 150.0), span_s),
+        detectors(subject, span_s),
+        panel("muscles, mV", muscles, (-50.0, 250.0), span_s),
+        motor(drives, strip, span_s),
+    ];
+    shade_slips(&mut panels, subject, span_s);
+    let subtitle = match subject.board {
+        "recorded" => "recorded".to_owned(),
+        board => format!("{board} board, seed {}", subject.seed),
+    };
+    Sheet::new(subject.scene, subtitle, 1, panels)
+}
+
+/// A panel that shows at least a range, and all of its curves.
+fn panel(title: &str, series: Vec<Series>, at_least: (f64, f64), (from_s, to_s): (f64, f64)) -> Panel {
+    let values = series.iter().flat_map(|own| &own.points).map(|point| point.1).filter(|y| y.is_finite());
+    let (low, high) = values.fold(at_least, |(low, high), y| (low.min(y), high.max(y)));
+    let air = (high - low) * 0.05;
+    let low = if low < 0.0 { low - air } else { low };
+    Panel::new(title, Axis::even("time, s", from_s, to_s), Axis::even("", low, high + air), series)
+}
+
+fn shade_slips(panels: &mut [Panel], subject: &Subject, span_s: (f64, f64)) {
+    let slips = subject.truth.iter().flat_map(|truth| &truth.slips);
+    let slips = joined(slips.map(|slip| (slip.micro_onset_s, slip.end_s.min(span_s.1))), span_s);
+    // A slip is shorter than a pixel in a long run, and is what the figure is about.
+    let visible_s = (span_s.1 - span_s.0) / 400.0;
+    for panel in panels.iter_mut() {
+        panel.bands.extend(slips.iter().map(|&(begin_s, end_s)| Band {
+            x: (begin_s, end_s.max(begin_s + visible_s).min(span_s.1)),
+            y: panel.y.ends,
+            colour: SLIP.mix(0.35),
+        }));
+    }
+    if let (Some(first), false) = (panels.first_mut(), slips.is_empty()) {
+        first.series.push(Series::new("the object slips", SLIP, Mark::Line, []));
     }
 }
 
@@ -71,12 +98,12 @@ fn joined(stretches: impl Iterator<Item = (f64, f64)>, (from_s, to_s): (f64, f64
     joined
 }
 
-fn curve(name: &str, colour: RGBColor, thin: Thin) -> Curve {
-    Curve { name: name.to_owned(), colour, points: thin.points() }
+fn curve(name: &str, colour: RGBColor, thin: Thin) -> Series {
+    Series::new(name, colour, Mark::Line, thin.points())
 }
 
 /// A threshold as it was in force: the default, and what each command that was taken made of it.
-fn in_force(name: &str, id: SettingId, subject: &Subject, (from_s, to_s): (f64, f64)) -> Level {
+fn in_force(name: &str, id: SettingId, subject: &Subject, (from_s, to_s): (f64, f64)) -> Series {
     let mut config = Config { line_trusted: subject.run.trusts_line, ..Config::default() };
     let mut points = vec![(from_s, f64::from(config.get(id)))];
     for (frame, command) in &subject.run.taken {
@@ -89,66 +116,33 @@ fn in_force(name: &str, id: SettingId, subject: &Subject, (from_s, to_s): (f64, 
         }
     }
     points.push((to_s, f64::from(config.get(id))));
-    Level { name: name.to_owned(), points }
+    Series::new(name, LEVEL, Mark::Dashes, points)
 }
 
-/// When each detector said slip, or warned of it: a row for each, high while it did.
+/// A row for each detector, high while it said slip or warned of it.
 fn detectors(subject: &Subject, span_s: (f64, f64)) -> Panel {
     const COLOURS: [RGBColor; 5] =
         [colour::BLUE, colour::ORANGE, colour::PURPLE, colour::GREEN, colour::VERMILLION];
     // Nothing is injected but by a person.
     let all: Vec<DetectorId> = DetectorId::ALL.into_iter().filter(|&id| id != DetectorId::Injected).collect();
-    let count = all.len();
-    let curve = |(row, id): (usize, DetectorId)| {
-        // From top to bottom, as they are named beside it.
-        let low = (count - 1 - row) as f64;
+    let row = |(row, id): (usize, &DetectorId)| {
+        // From top to bottom, as they are named above it.
+        let low = (all.len() - 1 - row) as f64;
         let (mut points, high) = (vec![(span_s.0, low)], low + 0.8);
-        for verdict in subject.timeline.verdicts_said(id) {
+        for verdict in subject.timeline.verdicts_said(*id) {
             let (from_s, to_s) = (verdict.from_s.max(span_s.0), verdict.to_s.min(span_s.1));
             if from_s <= to_s {
                 points.extend([(from_s, low), (from_s, high), (to_s, high), (to_s, low)]);
             }
         }
         points.push((span_s.1, low));
-        Curve { name: String::new(), colour: COLOURS[row % COLOURS.len()], points: thin(points, span_s) }
+        Series::new(id.title(), COLOURS[row % COLOURS.len()], Mark::Line, thin(points, span_s))
     };
-    let middle = |row: usize| (count - 1 - row) as f64 + 0.3;
-    let names = all.iter().enumerate().map(|(row, id)| (middle(row), id.title().to_owned())).collect();
-    let curves: Vec<Curve> = all.into_iter().enumerate().map(curve).collect();
-    let rows = count as f64;
-    Panel {
-        label: "slip said".to_owned(),
-        curves,
-        names,
-        at_least: (-0.2, rows),
-        height: 0.8,
-        ..Panel::default()
-    }
+    let rows = all.iter().enumerate().map(row).collect();
+    panel("slip said", rows, (-0.2, all.len() as f64), span_s)
 }
 
-fn forces([normal, shear]: [Thin; 2], needs: Option<Needs>) -> Panel {
-    let mut curves = Vec::new();
-    if let Some(Needs { grip, needed }) = needs {
-        curves.push(curve("grip force", colour::BLUE, grip));
-        curves.push(curve("needed to hold", colour::VERMILLION, needed));
-    }
-    curves.push(curve("Fn as measured", colour::SKY, normal));
-    curves.push(curve("Ft as measured", colour::ORANGE, shear));
-    Panel { label: "force, N".to_owned(), curves, at_least: (0.0, 1.0), height: 1.3, ..Panel::default() }
-}
-
-fn muscles([flexor, extensor]: [Thin; 2], gate: Level) -> Panel {
-    Panel {
-        label: "muscles, mV".to_owned(),
-        curves: vec![curve("flexor", colour::GREEN, flexor), curve("extensor", colour::ORANGE, extensor)],
-        levels: vec![gate],
-        at_least: (-50.0, 250.0),
-        height: 1.0,
-        ..Panel::default()
-    }
-}
-
-fn motor(drives: [Drive; 4], strip: Vec<Stretch>) -> Panel {
+fn motor(drives: [Drive; 4], strip: Vec<(GripMode, f64, f64)>, span_s: (f64, f64)) -> Panel {
     let look = |source| match source {
         DriveSource::Wearer => ("by the wearer", colour::GREEN),
         DriveSource::Reflex => ("by the reflex", colour::BLUE),
@@ -158,18 +152,24 @@ fn motor(drives: [Drive; 4], strip: Vec<Stretch>) -> Panel {
     let always = |source| matches!(source, DriveSource::Wearer | DriveSource::Reflex);
     let shown = drives.into_iter().filter(|own| own.drove || always(own.source));
     let curves = shown.map(|own| curve(look(own.source).0, look(own.source).1, own.percent)).collect();
-    Panel {
-        label: "motor, % (close > 0)".to_owned(),
-        curves,
-        strip,
-        at_least: (-110.0, 110.0),
-        height: 1.3,
-        ..Panel::default()
+    let mut panel = panel("motor, % (close > 0)", curves, (STRIP.0, 110.0), span_s);
+    for (mode, from_s, to_s) in strip {
+        let colour = colour_of(mode);
+        panel.bands.push(Band { x: (from_s, to_s), y: STRIP, colour: colour.to_rgba() });
+        if panel.series.iter().all(|own| own.name != mode.name()) {
+            panel.series.push(Series::new(mode.name(), colour, Mark::Line, []));
+        }
     }
+    panel
 }
 
-/// Every stretch of one mode; the run ends at `end_s`.
-fn modes(subject: &Subject, first: Option<GripMode>, end_s: f64, (from_s, to_s): (f64, f64)) -> Vec<Stretch> {
+/// The stretches of the modes; the run ends at `end_s`.
+fn modes(
+    subject: &Subject,
+    first: Option<GripMode>,
+    end_s: f64,
+    (from_s, to_s): (f64, f64),
+) -> Vec<(GripMode, f64, f64)> {
     let mut stretches = Vec::new();
     let changes = subject.run.events.iter().filter_map(|event| match event.kind {
         EventKind::Mode { to, .. } => Some((to, subject.timeline.time_s(event.frame))),
@@ -177,39 +177,31 @@ fn modes(subject: &Subject, first: Option<GripMode>, end_s: f64, (from_s, to_s):
     });
     // What was in force before the first change: a run begins in standby, a recording perhaps in the middle.
     let first =
-        if changes.clone().next().is_none() || from_s > subject.timeline.zero_s() { first } else { None };
-    let mut begun = (first.unwrap_or_default(), subject.timeline.zero_s());
+        if changes.clone().next().is_none() || from_s > subject.timeline.zero_s { first } else { None };
+    let mut begun = (first.unwrap_or_default(), subject.timeline.zero_s);
     for next in changes.chain([(GripMode::default(), end_s.max(to_s))]) {
         let (mode, since_s) = std::mem::replace(&mut begun, next);
-        let (colour, name) = look(mode);
         let (from_s, to_s) = (since_s.max(from_s), next.1.min(to_s));
         if from_s < to_s {
-            stretches.push(Stretch { name: name.to_owned(), colour, from_s, to_s });
+            stretches.push((mode, from_s, to_s));
         }
     }
     let pixel_s = (to_s - from_s) / MANY as f64;
     if stretches.len() > MANY {
-        // Of many, those that can be seen, and of the others the first in each pixel.
-        let mut pixel = usize::MAX;
-        stretches.retain(|stretch| {
-            let at = ((stretch.from_s - from_s) / pixel_s) as usize;
-            let first = std::mem::replace(&mut pixel, at) != at;
-            first || stretch.to_s - stretch.from_s > pixel_s
-        });
+        stretches.retain(|(_, from_s, to_s)| to_s - from_s > pixel_s);
     }
     stretches
 }
 
-fn look(mode: GripMode) -> (RGBColor, &'static str) {
-    let colour = match mode {
+const fn colour_of(mode: GripMode) -> RGBColor {
+    match mode {
         GripMode::Standby => colour::GREY,
         GripMode::Wearer => colour::GREEN,
         GripMode::Watch => colour::SKY,
         GripMode::Slip => colour::VERMILLION,
         GripMode::Incipient => colour::ORANGE,
         GripMode::Settle => colour::YELLOW,
-    };
-    (colour, mode.name())
+    }
 }
 
 #[cfg(test)]
@@ -221,17 +213,15 @@ mod tests {
         // The scene makes the films as good as deaf at 0.1 s.
         let file = crate::session::load_scene("array-pour").unwrap();
         let outcome = crate::session::scene(&file, 1, &crate::session::Board::Host, &mut |_| {}).unwrap();
-        let panel = |label: &str| outcome.figure.panels.iter().find(|panel| panel.label.starts_with(label));
-        let s1 = &panel("vibration").unwrap().levels[0].points;
+        let panel = |title: &str| outcome.figure.panels.iter().find(|panel| panel.title.starts_with(title));
+        let s1 = &panel("vibration").unwrap().series[1].points;
         assert_eq!((s1.first().map(|p| p.1), s1.last().map(|p| p.1)), (Some(100.0), Some(1_500.0)), "{s1:?}");
         assert!(s1.iter().any(|point| (point.0 - 0.1).abs() < 0.01));
-        let says = panel("slip said").unwrap();
-        let rows = &says.curves;
-        assert_eq!((rows.len(), says.names.len()), (DetectorId::COUNT - 1, DetectorId::COUNT - 1));
-        let highest = |row: &Curve| row.points.iter().map(|point| point.1).fold(0.0, f64::max);
-        let mlp = says.names.iter().position(|(_, name)| name == DetectorId::Mlp.title()).unwrap();
-        let mlp = &rows[mlp];
+        let rows = &panel("slip said").unwrap().series;
+        assert_eq!(rows.iter().filter(|row| row.name != "the object slips").count(), DetectorId::COUNT - 1);
+        let mlp = rows.iter().find(|row| row.name == DetectorId::Mlp.title()).unwrap();
+        let highest = mlp.points.iter().map(|point| point.1).fold(0.0, f64::max);
         let said = outcome.report.detectors.of_id(DetectorId::Mlp).said;
-        assert_eq!(highest(mlp).fract() > 0.5, said > 0, "said {said} times");
+        assert_eq!(highest.fract() > 0.5, said > 0, "said {said} times");
     }
 }

@@ -12,9 +12,10 @@ use crate::timeline::{frame_end_s, ticks};
 
 #[derive(Clone, Debug)]
 pub struct Sketch {
-    span_s: (f64, f64),
+    pub span_s: (f64, f64),
     zero_s: f64,
-    end_s: Option<f64>,
+    /// End of the last slow frame and half a frame, s.
+    pub end_s: Option<f64>,
     pub first_mode: Option<GripMode>,
     /// Fn and Ft as measured, N.
     pub forces: [Thin; 2],
@@ -63,15 +64,6 @@ impl Sketch {
             motor: [DriveSource::Wearer, DriveSource::Reflex, DriveSource::Link, DriveSource::Behaviour]
                 .map(|source| Drive { source, percent: thin(), drove: false }),
         }
-    }
-
-    pub const fn span_s(&self) -> (f64, f64) {
-        self.span_s
-    }
-
-    /// When the last slow frame that was heard of ended, and as much again, s.
-    pub const fn end_s(&self) -> Option<f64> {
-        self.end_s
     }
 
     fn tick(&mut self, t_s: f64, tick: &TickRecord) {

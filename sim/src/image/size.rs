@@ -5,13 +5,11 @@ use std::path::Path;
 use anyhow::{Context, Result, ensure};
 use object::{File, Object, ObjectSection, SectionFlags, SectionKind, elf};
 
-/// The chip's flash for an image, bytes: all but the last two sectors, which outlive it. The image's build fails if it
-/// does not fit, so this is only for shares.
+/// Flash for an image, bytes: all but the last two sectors, which outlive it.
 pub const FLASH_BYTES: u64 = 256 * 1024;
 pub const RAM_BYTES: u64 = 128 * 1024;
 
-/// Bytes that an image takes before it runs. Its stack is measured by running it: see
-/// [`Run::stack_bytes`](crate::board::Run::stack_bytes).
+/// Bytes that an image takes before it runs, without its stack.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Size {
     pub flash: u64,
@@ -24,17 +22,12 @@ impl Size {
         let file = File::parse(&*bytes).with_context(|| format!("{} is not an ELF file", path.display()))?;
         let mut size = Self::default();
         for section in file.sections() {
-            let SectionFlags::Elf { sh_flags } = section.flags() else {
-                continue;
-            };
-            if sh_flags & u64::from(elf::SHF_ALLOC) == 0 {
-                continue;
-            }
-            let in_ram = sh_flags & u64::from(elf::SHF_WRITE) != 0;
-            let in_flash = section.kind() != SectionKind::UninitializedData;
+            let SectionFlags::Elf { sh_flags } = section.flags() else { continue };
+            let is = |flag| sh_flags & u64::from(flag) != 0;
+            let bytes = if is(elf::SHF_ALLOC) { section.size() } else { 0 };
             // Variables with first values are in both.
-            size.ram += if in_ram { section.size() } else { 0 };
-            size.flash += if in_flash { section.size() } else { 0 };
+            size.ram += if is(elf::SHF_WRITE) { bytes } else { 0 };
+            size.flash += if section.kind() == SectionKind::UninitializedData { 0 } else { bytes };
         }
         ensure!(size.flash > 0, "{} has nothing to flash", path.display());
         Ok(size)

@@ -49,8 +49,7 @@ fn address_of(file: &File<'_>, name: &str) -> Result<u64> {
         .with_context(|| format!("has no symbol `{name}`"))
 }
 
-/// The addresses behind the calls of `target` in `text`, which begins at `base`: BL, immediate, in encoding T1 (ARMv7-M manual,
-/// A7.7.18).
+/// Return addresses of the calls of `target` in `text`, which begins at `base`: BL in encoding T1 (ARMv7-M manual, A7.7.18).
 fn return_addresses(text: &[u8], base: u64, target: u64) -> Vec<u64> {
     let found = text.windows(4).enumerate().step_by(2).filter_map(|(offset, bytes)| {
         let after = base + offset as u64 + 4;

@@ -7,8 +7,7 @@ use anyhow::{Context, Result};
 use super::ArrayRecipe;
 use crate::recipe::Kind;
 
-/// The recipe to read a file with: the one that was asked for, by file or by name; else the one that its name calls for.
-/// Fails if there is none, or it is wrong; says which there are.
+/// The recipe that was asked for, by file or by name; else the one that the file's name calls for. Fails if there is none.
 pub fn choose(path: &Path, asked: Option<&str>) -> Result<ArrayRecipe> {
     if let Some(asked) = asked {
         return Ok(ArrayRecipe::asked(asked)?.recipe);

@@ -1,14 +1,9 @@
-//! Labelled recordings of a force array: what `tenax train` learns from and `tenax evaluate` scores.
-//!
-//! A CSV file holds one or more recordings, one row a reading, and says where the object slipped: in every row, or once
-//! for a whole recording (the label then is the same in all of its rows). A [`recipe`] says which ten columns are the
-//! array, how they become the board's 14-bit samples, at what rate they were taken, and which labels mean slip. What comes
-//! out is what the board would have read: ten samples, 80 times a second.
+//! Labelled recordings of a force array, from CSV files of a row a reading: ten samples as the board would have read them, 80 times a
+//! second, and where the object slipped.
 
 pub mod library;
 mod read;
 pub mod recipe;
-pub mod resample;
 
 use std::str::FromStr;
 
@@ -60,13 +55,11 @@ pub struct Step {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recording {
     pub name: String,
-    /// What it shares with others that it must not be told apart from: a session or an object. Never in two parts.
     pub session: String,
     pub material: String,
     pub part: Option<Part>,
     pub doing: Doing,
     pub first_s: f64,
-    /// Its steps, 80 a second.
     pub steps: Vec<Step>,
     pub slips: Vec<SlipSpan>,
     pub exact: bool,

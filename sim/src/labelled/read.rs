@@ -1,14 +1,12 @@
 //! A CSV file, read with a recipe.
 
-use std::collections::BTreeMap;
 use std::io::Read;
 use std::path::Path;
 
 use csv::StringRecord;
-use tenax_hal_shim::channel::{ARRAY_COUNT, SAMPLE_MAX};
+use tenax_hal_shim::channel::{ARRAY_COUNT, SAMPLE_MAX, SLOW_HZ};
 
 use super::recipe::ArrayRecipe;
-use super::resample::instants;
 use super::{Part, Recording, Step};
 use crate::input::{CsvError, number, open, rows};
 use crate::scorer::{Doing, SlipSpan, onsets};
@@ -20,29 +18,22 @@ pub fn read(path: &Path, recipe: &ArrayRecipe) -> Result<Vec<Recording>, CsvErro
     parse(source, recipe, &file)
 }
 
-/// Reads from anything; `file` is what errors call it. Recordings come in the order of their first rows.
-/// An error says which row is wrong, and what is allowed.
+/// Recordings in the order of their first rows; `file` is its name in errors, which say the row and what is allowed.
 pub fn parse(source: impl Read, recipe: &ArrayRecipe, file: &str) -> Result<Vec<Recording>, CsvError> {
     let mut reader = rows(source);
     let header = reader.headers().map_err(|error| CsvError::of(file, error))?.clone();
     let columns = Columns::find(&header, recipe, file)?;
-    let mut order: Vec<Open> = Vec::new();
-    let mut places: BTreeMap<String, usize> = BTreeMap::new();
+    let mut all: Vec<Open> = Vec::new();
     for record in reader.into_records() {
         let record = record.map_err(|error| CsvError::of(file, error))?;
         let line = record.position().map_or(0, csv::Position::line);
         let wrong = |what| CsvError::Row { file: file.to_owned(), line, what };
-        let row = columns.row(&record, recipe).map_err(wrong)?;
-        let place = *places.entry(row.about.name.clone()).or_insert_with(|| {
-            order.push(Open::new(row.about.clone()));
-            order.len() - 1
-        });
-        order[place].take(row, recipe).map_err(wrong)?;
+        columns.take(&record, recipe, &mut all).map_err(wrong)?;
     }
-    if order.is_empty() {
+    if all.is_empty() {
         return Err(CsvError::File { file: file.to_owned(), what: "no rows below the header".into() });
     }
-    Ok(order.into_iter().map(|open| open.close(columns.onsets.is_some())).collect())
+    Ok(all.into_iter().map(|open| open.close(columns.onsets.is_some())).collect())
 }
 
 struct Columns {
@@ -66,25 +57,26 @@ struct About {
     doing: Doing,
 }
 
-struct Row {
+/// A recording whose rows still come.
+struct Open {
     about: About,
-    t_s: Option<f64>,
-    samples: [f64; ARRAY_COUNT],
-    slip: bool,
+    t_s: Vec<f64>,
+    samples: Vec<[f64; ARRAY_COUNT]>,
+    labels: Vec<bool>,
     slips: Vec<SlipSpan>,
 }
 
 impl Columns {
     fn find(header: &StringRecord, recipe: &ArrayRecipe, file: &str) -> Result<Self, CsvError> {
-        let place = |column: &str| {
-            header.iter().position(|name| name == column).ok_or_else(|| {
+        let if_there =
+            |column: Option<&String>| column.and_then(|column| header.iter().position(|name| name == column));
+        let place = |column: &String| {
+            if_there(Some(column)).ok_or_else(|| {
                 let why = format!("no column `{column}`, which the recipe asks for");
                 CsvError::no_column(file, &why, header)
             })
         };
-        let maybe = |column: Option<&String>| column.map(|column| place(column)).transpose();
-        let if_there =
-            |column: Option<&String>| column.and_then(|column| header.iter().position(|name| name == column));
+        let maybe = |column: Option<&String>| column.map(place).transpose();
         let mut array = [0; ARRAY_COUNT];
         for (found, column) in array.iter_mut().zip(recipe.array.columns.get_ref()) {
             *found = place(column)?;
@@ -92,7 +84,7 @@ impl Columns {
         Ok(Self {
             array,
             label: place(&recipe.labels.column)?,
-            time: maybe(recipe.array.time.as_ref().map(toml::Spanned::get_ref))?,
+            time: maybe(recipe.array.time.as_ref())?,
             name: maybe(recipe.recordings.name.as_ref())?,
             session: maybe(recipe.recordings.session.as_ref())?,
             material: maybe(recipe.recordings.material.as_ref())?,
@@ -102,54 +94,58 @@ impl Columns {
         })
     }
 
-    fn row(&self, record: &StringRecord, recipe: &ArrayRecipe) -> Result<Row, String> {
-        let number = |place: usize, column: &str| number(column, &record[place]);
+    fn about(&self, record: &StringRecord) -> Result<About, String> {
+        let text = |place: Option<usize>| place.map(|place| record[place].to_owned());
+        let name = text(self.name).unwrap_or_else(|| "recording".into());
+        let session = text(self.session).unwrap_or_else(|| name.clone());
+        Ok(About {
+            material: text(self.material).unwrap_or_else(|| session.clone()),
+            part: self.part.map(|place| record[place].parse()).transpose()?,
+            doing: self.task.map_or(Doing::Unknown, |place| Doing::named(&record[place])),
+            name,
+            session,
+        })
+    }
+
+    fn take(&self, record: &StringRecord, recipe: &ArrayRecipe, all: &mut Vec<Open>) -> Result<(), String> {
+        let about = self.about(record)?;
+        let name = &about.name;
+        let place = all.iter().rposition(|open| open.about.name == *name).unwrap_or_else(|| {
+            all.push(Open::new(about.clone()));
+            all.len() - 1
+        });
+        let open = &mut all[place];
+        if open.about != about {
+            return Err(format!("recording `{name}` changes its session, material, part or task here"));
+        }
+        let t_s = match (self.time, &recipe.array.time, &recipe.array.rate_hz) {
+            (Some(place), Some(column), _) => number(column, &record[place])?,
+            (.., Some(rate_hz)) => open.t_s.len() as f64 / rate_hz.get_ref(),
+            _ => return Err("neither time nor rate is known".into()),
+        };
+        let before = *open.t_s.last().unwrap_or(&t_s);
+        if t_s < before {
+            return Err(format!("time goes backwards in recording `{name}`, from {before} s to {t_s} s"));
+        }
+        if t_s - before > GAP_MAX_S {
+            return Err(format!(
+                "recording `{name}` has a gap of {:.3} s, longer than {GAP_MAX_S} s; make it two recordings (is its time in \
+                 seconds?)",
+                t_s - before
+            ));
+        }
         let mut samples = [0.0; ARRAY_COUNT];
         for ((sample, &place), column) in
             samples.iter_mut().zip(&self.array).zip(recipe.array.columns.get_ref())
         {
-            *sample = recipe.array.offset + recipe.array.scale.get_ref() * number(place, column)?;
+            *sample = recipe.array.offset + recipe.array.scale.get_ref() * number(column, &record[place])?;
         }
-        let label = &record[self.label];
-        let means = |values: &toml::Spanned<Vec<String>>| values.get_ref().iter().any(|value| value == label);
-        let slip = means(&recipe.labels.slip);
-        if !slip && !means(&recipe.labels.no_slip) {
-            let known = [recipe.labels.slip.get_ref().join(", "), recipe.labels.no_slip.get_ref().join(", ")];
-            let column = &recipe.labels.column;
-            return Err(format!(
-                "column `{column}` is `{label}`; the recipe knows {} (slip) and {} (none)",
-                known[0], known[1]
-            ));
-        }
-        let text = |place: Option<usize>| place.map(|place| record[place].to_owned());
-        let name = text(self.name).unwrap_or_else(|| "recording".into());
-        let session = text(self.session).unwrap_or_else(|| name.clone());
-        let about = About {
-            material: text(self.material).unwrap_or_else(|| session.clone()),
-            part: self.part.map(|place| record[place].parse::<Part>()).transpose()?,
-            doing: self.task.map_or(Doing::Unknown, |place| Doing::named(&record[place])),
-            name,
-            session,
-        };
-        Ok(Row {
-            about,
-            t_s: match (self.time, &recipe.array.time) {
-                (Some(place), Some(column)) => Some(number(place, column.get_ref())?),
-                _ => None,
-            },
-            slips: self.onsets.map_or(Ok(Vec::new()), |place| onsets::parse(&record[place]))?,
-            samples,
-            slip,
-        })
+        open.t_s.push(t_s);
+        open.samples.push(samples);
+        open.labels.push(recipe.labels.is_slip(&record[self.label])?);
+        open.slips.extend(self.onsets.map_or(Ok(Vec::new()), |place| onsets::parse(&record[place]))?);
+        Ok(())
     }
-}
-
-struct Open {
-    about: About,
-    t_s: Vec<f64>,
-    samples: Vec<[f64; ARRAY_COUNT]>,
-    labels: Vec<bool>,
-    slips: Vec<SlipSpan>,
 }
 
 impl Open {
@@ -157,47 +153,18 @@ impl Open {
         Self { about, t_s: Vec::new(), samples: Vec::new(), labels: Vec::new(), slips: Vec::new() }
     }
 
-    fn take(&mut self, row: Row, recipe: &ArrayRecipe) -> Result<(), String> {
-        let name = &self.about.name;
-        if self.about != row.about {
-            return Err(format!("recording `{name}` changes its session, material, part or task here"));
-        }
-        let t_s = match (row.t_s, &recipe.array.rate_hz) {
-            (Some(t_s), _) => t_s,
-            (None, Some(rate_hz)) => self.t_s.len() as f64 / rate_hz.get_ref(),
-            (None, None) => return Err("neither time nor rate is known".into()),
-        };
-        if let Some(&before) = self.t_s.last() {
-            if t_s < before {
-                return Err(format!("time goes backwards in recording `{name}`, from {before} s to {t_s} s"));
-            }
-            if t_s - before > GAP_MAX_S {
-                return Err(format!(
-                    "recording `{name}` has a gap of {:.3} s, longer than {GAP_MAX_S} s; make it two recordings (is its \
-                     time in seconds?)",
-                    t_s - before
-                ));
-            }
-        }
-        self.t_s.push(t_s);
-        self.samples.push(row.samples);
-        self.labels.push(row.slip);
-        self.slips.extend(row.slips);
-        Ok(())
-    }
-
     fn close(mut self, exact: bool) -> Recording {
-        let steps: Vec<Step> = instants(&self.t_s)
-            .into_iter()
-            .map(|(row, part)| {
-                let next = (row + 1).min(self.samples.len() - 1);
-                let mut samples = [0; ARRAY_COUNT];
-                for ((sample, a), b) in samples.iter_mut().zip(self.samples[row]).zip(self.samples[next]) {
-                    *sample = (a + part * (b - a)).round().clamp(0.0, f64::from(SAMPLE_MAX)) as u16;
-                }
-                Step { samples, slip: self.labels[if part < 0.5 { row } else { next }] }
-            })
-            .collect();
+        let step = |(row, part): (usize, f64)| {
+            let next = (row + 1).min(self.samples.len() - 1);
+            let (a, b) = (self.samples[row], self.samples[next]);
+            let sample =
+                |n: usize| (a[n] + part * (b[n] - a[n])).round().clamp(0.0, f64::from(SAMPLE_MAX)) as u16;
+            Step {
+                samples: std::array::from_fn(sample),
+                slip: self.labels[if part < 0.5 { row } else { next }],
+            }
+        };
+        let steps: Vec<Step> = instants(&self.t_s).into_iter().map(step).collect();
         let first_s = self.t_s.first().copied().unwrap_or_default();
         if !exact {
             self.slips = onsets::of_labels(steps.iter().map(|step| step.slip), first_s);
@@ -206,6 +173,27 @@ impl Open {
         let About { name, session, material, part, doing } = self.about;
         Recording { name, session, material, part, doing, first_s, steps, slips: self.slips, exact }
     }
+}
+
+/// Places on a recording's own rows at which the board would have read: row, and how far on the way to the next. A recording faster than
+/// 80 Hz is not low-passed first: the board's switched inputs would not do so either.
+fn instants(t_s: &[f64]) -> Vec<(usize, f64)> {
+    let (Some(&first), Some(&last)) = (t_s.first(), t_s.last()) else { return Vec::new() };
+    let rate_hz = f64::from(SLOW_HZ);
+    // A hair more, so that a last row that is there but for rounding counts.
+    let count = ((last - first) * rate_hz + 1e-6) as usize + 1;
+    let mut row = 0;
+    let place = |n: usize| {
+        let t = first + n as f64 / rate_hz;
+        while row + 2 < t_s.len() && t_s[row + 1] <= t {
+            row += 1;
+        }
+        match t_s.get(row + 1) {
+            Some(&next) if next > t_s[row] => (row, ((t - t_s[row]) / (next - t_s[row])).clamp(0.0, 1.0)),
+            _ => (row, 0.0),
+        }
+    };
+    (0..count).map(place).collect()
 }
 
 #[cfg(test)]
@@ -271,5 +259,17 @@ no_slip = ['no']
         let recipe = ArrayRecipe::parse(RECIPE, "r.toml").unwrap();
         let said = parse("r,part,label,t\n".as_bytes(), &recipe, "d.csv").unwrap_err().to_string();
         assert!(said.starts_with("d.csv:1: no column `a`"), "{said}");
+    }
+
+    #[test]
+    fn a_straight_line_at_another_rate_stays_one() {
+        let t_s = [0.0, 0.01, 0.02, 0.02, 0.045, 0.1];
+        for (n, (row, part)) in instants(&t_s).into_iter().enumerate() {
+            let t = t_s[row] + part * (t_s.get(row + 1).unwrap_or(&t_s[row]) - t_s[row]);
+            assert!((t - n as f64 * 0.0125).abs() < 1e-9, "{n}: {t}");
+        }
+        assert_eq!(instants(&t_s).len(), 9);
+        assert_eq!(instants(&[3.0]), [(0, 0.0)]);
+        assert!(instants(&[]).is_empty());
     }
 }

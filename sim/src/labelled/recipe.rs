@@ -1,6 +1,4 @@
-//! How a CSV file becomes labelled recordings of the array.
-//!
-//! `docs/array.md` is the page for people who write one.
+//! How a CSV file becomes labelled recordings of the array (`docs/array.md`).
 
 use serde::Deserialize;
 use tenax_hal_shim::channel::ARRAY_COUNT;
@@ -30,20 +28,19 @@ pub struct ArrayRecipe {
 pub struct Array {
     pub columns: Spanned<Vec<String>>,
     /// 14-bit samples for one unit of the columns.
-    #[serde(default = "one")]
+    #[serde(default = "recipe::one")]
     pub scale: Spanned<f64>,
     #[serde(default)]
     pub offset: f64,
     pub rate_hz: Option<Spanned<f64>>,
     /// The column that holds the time in seconds. Either this or `rate_hz`.
-    pub time: Option<Spanned<String>>,
+    pub time: Option<String>,
 }
 
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Recordings {
     pub name: Option<String>,
-    /// What must never be both learned from and scored on: a session, an object. Default: the name.
     pub session: Option<String>,
     pub material: Option<String>,
     pub task: Option<String>,
@@ -76,11 +73,6 @@ pub struct Features {
     pub structure_knee: Option<u32>,
 }
 
-fn one() -> Spanned<f64> {
-    // A default has no place in the file; nothing that is wrong can come from one.
-    Spanned::new(0..0, 1.0)
-}
-
 impl Kind for ArrayRecipe {
     const BUILTIN: &'static [(&'static str, &'static str)] = &[
         ("array", include_str!("../../recipes/array.toml")),
@@ -96,12 +88,7 @@ impl Kind for ArrayRecipe {
         self.array.check()?;
         self.labels.check()?;
         for (name, frames) in [("lag", &self.features.lag), ("window", &self.features.window)] {
-            if let Some(frames) = frames
-                && !(1..=40).contains(frames.get_ref())
-            {
-                let what = format!("{name} is {}; 1 to 40 slow frames are allowed", frames.get_ref());
-                return Err((frames.span(), what));
-            }
+            recipe::if_within(frames, name, 1, 40)?;
         }
         Ok(())
     }
@@ -119,32 +106,39 @@ impl Array {
         {
             return Err((self.columns.span(), format!("column `{twice}` is given twice")));
         }
-        let scale = *self.scale.get_ref();
-        if !scale.is_finite() || scale == 0.0 {
-            return Err((self.scale.span(), "scale must be a number other than 0".into()));
-        }
+        recipe::check_scale(&self.scale)?;
         match (&self.rate_hz, &self.time) {
-            (Some(rate), None) if !(1.0..=100_000.0).contains(rate.get_ref()) => {
-                Err((rate.span(), format!("rate_hz is {}; 1 to 100000 is allowed", rate.get_ref())))
-            }
-            (Some(_), None) | (None, Some(_)) => Ok(()),
+            (rate, None) if rate.is_some() => recipe::if_within(rate, "rate_hz", 1.0, 100_000.0),
+            (None, Some(_)) => Ok(()),
             (Some(rate), Some(_)) => Err((rate.span(), "give either rate_hz or time, not both".into())),
-            (None, None) => Err((
-                self.columns.span(),
-                "either rate_hz (rows a second) or time (a column in seconds) is needed".into(),
-            )),
+            (None | Some(_), None) => {
+                let what = "either rate_hz (rows a second) or time (a column in seconds) is needed";
+                Err((self.columns.span(), what.into()))
+            }
         }
     }
 }
 
 impl Labels {
+    /// Fails if the recipe does not know the label.
+    pub fn is_slip(&self, label: &str) -> Result<bool, String> {
+        let means = |values: &Spanned<Vec<String>>| values.get_ref().iter().any(|value| value == label);
+        let slip = means(&self.slip);
+        if slip || means(&self.no_slip) {
+            return Ok(slip);
+        }
+        let [slip, none] = [&self.slip, &self.no_slip].map(|values| values.get_ref().join(", "));
+        Err(format!(
+            "column `{}` is `{label}`; the recipe knows {slip} (slip) and {none} (none)",
+            self.column
+        ))
+    }
+
     fn check(&self) -> Checked {
         for (name, values) in [("slip", &self.slip), ("no_slip", &self.no_slip)] {
             if values.get_ref().is_empty() {
-                return Err((
-                    values.span(),
-                    format!("{name} needs at least one value of the label's column"),
-                ));
+                let what = format!("{name} needs at least one value of the label's column");
+                return Err((values.span(), what));
             }
         }
         match self.slip.get_ref().iter().find(|value| self.no_slip.get_ref().contains(value)) {

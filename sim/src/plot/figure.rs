@@ -1,6 +1,4 @@
-//! What is in a figure, before anybody draws it.
-
-use plotters::style::RGBColor;
+//! What all figures share.
 
 /// Colours that stay apart for colour-blind eyes and in print (Okabe and Ito, 2008).
 pub mod colour {
@@ -14,45 +12,4 @@ pub mod colour {
     pub const SKY: RGBColor = RGBColor(86, 180, 233);
     pub const GREY: RGBColor = RGBColor(150, 150, 150);
     pub const YELLOW: RGBColor = RGBColor(240, 228, 66);
-}
-
-#[derive(Clone, Debug)]
-pub struct Curve {
-    pub name: String,
-    pub colour: RGBColor,
-    pub points: Vec<(f64, f64)>,
-}
-
-#[derive(Clone, Debug)]
-pub struct Level {
-    pub name: String,
-    pub points: Vec<(f64, f64)>,
-}
-
-#[derive(Clone, Debug)]
-pub struct Stretch {
-    pub name: String,
-    pub colour: RGBColor,
-    pub from_s: f64,
-    pub to_s: f64,
-}
-
-#[derive(Clone, Debug, Default)]
-pub struct Panel {
-    pub label: String,
-    pub curves: Vec<Curve>,
-    pub levels: Vec<Level>,
-    pub strip: Vec<Stretch>,
-    pub names: Vec<(f64, String)>,
-    pub at_least: (f64, f64),
-    pub height: f64,
-}
-
-#[derive(Clone, Debug)]
-pub struct Figure {
-    pub title: String,
-    pub subtitle: String,
-    pub span_s: (f64, f64),
-    pub slips: Vec<(f64, f64)>,
-    pub panels: Vec<Panel>,
 }

@@ -1,8 +1,8 @@
-//! What is on a sheet of panels, before anybody draws it.
+//! The panels of a sheet, before anybody draws it.
 
 pub mod draw;
 
-use plotters::style::RGBColor;
+use plotters::style::{RGBAColor, RGBColor};
 
 #[derive(Clone, Debug)]
 pub struct Axis {
@@ -69,19 +69,28 @@ pub struct Cell {
     pub error: Option<f64>,
 }
 
+/// A rectangle behind the curves.
+#[derive(Clone, Copy, Debug)]
+pub struct Band {
+    pub x: (f64, f64),
+    pub y: (f64, f64),
+    pub colour: RGBAColor,
+}
+
 #[derive(Clone, Debug)]
 pub struct Panel {
     pub title: String,
     pub x: Axis,
     pub y: Axis,
     pub cells: Vec<Cell>,
+    pub bands: Vec<Band>,
     pub series: Vec<Series>,
     pub words: Vec<(f64, f64, String)>,
 }
 
 impl Panel {
     pub fn new(title: impl Into<String>, x: Axis, y: Axis, series: Vec<Series>) -> Self {
-        Self { title: title.into(), x, y, cells: Vec::new(), series, words: Vec::new() }
+        Self { title: title.into(), x, y, cells: Vec::new(), bands: Vec::new(), series, words: Vec::new() }
     }
 }
 

@@ -2,15 +2,16 @@
 
 const COLUMNS: usize = 1_000;
 
-/// A curve that is thinned as it comes, so that it takes the same memory however long it gets: of each column of pixels
-/// the first, lowest, highest and last point are kept, so that no spike is lost.
+/// A curve that is thinned as it comes to the first, lowest, highest and last point of each column of pixels.
 #[derive(Clone, Debug)]
 pub struct Thin {
     from_s: f64,
     to_s: f64,
     width_s: f64,
     kept: Vec<(f64, f64)>,
-    column: Option<Column>,
+    at: usize,
+    /// The points of the column that is drawn now.
+    column: Vec<(f64, f64)>,
 }
 
 pub fn thin(points: impl IntoIterator<Item = (f64, f64)>, span_s: (f64, f64)) -> Vec<(f64, f64)> {
@@ -19,23 +20,11 @@ pub fn thin(points: impl IntoIterator<Item = (f64, f64)>, span_s: (f64, f64)) ->
     thin.points()
 }
 
-#[derive(Clone, Copy, Debug)]
-struct Column {
-    at: usize,
-    count: usize,
-    first: Point,
-    low: Point,
-    high: Point,
-    last: Point,
-}
-
-type Point = (usize, (f64, f64));
-
 impl Thin {
     /// A curve without points, from and to these times, s.
     pub fn new((from_s, to_s): (f64, f64)) -> Self {
         let width_s = ((to_s - from_s) / COLUMNS as f64).max(f64::MIN_POSITIVE);
-        Self { from_s, to_s, width_s, kept: Vec::new(), column: None }
+        Self { from_s, to_s, width_s, kept: Vec::new(), at: 0, column: Vec::new() }
     }
 
     pub fn push(&mut self, point: (f64, f64)) {
@@ -43,14 +32,11 @@ impl Thin {
             return;
         }
         let at = ((point.0 - self.from_s) / self.width_s) as usize;
-        match &mut self.column {
-            Some(column) if column.at == at => column.take(point),
-            _ => {
-                self.flush();
-                let first = (0, point);
-                self.column = Some(Column { at, count: 1, first, low: first, high: first, last: first });
-            }
+        if at != self.at {
+            self.flush();
+            self.at = at;
         }
+        self.column.push(point);
     }
 
     pub fn points(mut self) -> Vec<(f64, f64)> {
@@ -59,31 +45,13 @@ impl Thin {
     }
 
     fn flush(&mut self) {
-        let Some(Column { first, low, high, last, .. }) = self.column.take() else {
-            return;
-        };
-        let mut points = [first, low, high, last];
-        points.sort_unstable_by_key(|(place, _)| *place);
-        for (n, (place, point)) in points.iter().enumerate() {
-            if n == 0 || points[n - 1].0 != *place {
-                self.kept.push(*point);
-            }
-        }
-    }
-}
-
-impl Column {
-    fn take(&mut self, point: (f64, f64)) {
-        let new = (self.count, point);
-        self.count += 1;
-        self.last = new;
+        let column = &self.column;
         // The first of the lowest and the last of the highest; what is no number is higher than all.
-        if point.1.total_cmp(&self.low.1.1).is_lt() {
-            self.low = new;
-        }
-        if point.1.total_cmp(&self.high.1.1).is_ge() {
-            self.high = new;
-        }
+        let by_value = |a: &usize, b: &usize| column[*a].1.total_cmp(&column[*b].1);
+        let all = || 0..column.len();
+        let ends = [all().next(), all().min_by(by_value), all().max_by(by_value), all().last()];
+        self.kept.extend(all().filter(|n| ends.contains(&Some(*n))).map(|n| column[n]));
+        self.column.clear();
     }
 }
 

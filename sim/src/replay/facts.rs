@@ -19,8 +19,7 @@ const MUSCLE_MEAN_S: f64 = 0.05;
 
 /// No finger's friction is greater: dry skin at small loads has 2 to 3 (Derler and Gerhardt, Tribology Letters 45, 2012).
 const RATIO_MOST: f64 = 3.0;
-/// Between these a recorded normal force is one that a finger may have, N: below the first nothing is touched, above the second a motor
-/// of 140 N is at its end.
+/// Normal forces that a finger may have, N: from a touch to the end of a motor of 140 N.
 const NORMAL_N: [f64; 2] = [0.05, 140.0];
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -85,8 +84,7 @@ pub fn doubts(recording: &Recording, recipe: &Recipe) -> anyhow::Result<Vec<Stri
     Ok(doubts)
 }
 
-/// The first crest of Ft/Fn in a force recording: climbed to while the finger is loaded, then fallen from by a fifth.
-/// None if there is no such thing, or no force.
+/// The first crest of Ft/Fn, climbed to while the finger is loaded, then fallen from by a fifth. None if there is none, or no force.
 pub fn crest(recording: &Recording, recipe: &Recipe) -> anyhow::Result<Option<Crest>> {
     let Some(rows) = forces(recording, recipe)? else {
         return Ok(None);
@@ -114,9 +112,8 @@ pub fn crest(recording: &Recording, recipe: &Recipe) -> anyhow::Result<Option<Cr
     Ok(None)
 }
 
-/// When a muscle first became active in the recording itself, s, whatever the front end's low-pass makes of it: the
-/// first instant at which the 50 ms centred mean of the rectified signal, at the recipe's gain, passes the gate's
-/// threshold. None if it never does, or the recipe brings no column to a myosensor.
+/// When a muscle first became active in the recording itself, s: the 50 ms centred mean of the rectified signal, at the recipe's gain,
+/// passes the gate's threshold. None if it never does, or no column reaches a myosensor.
 pub fn muscle_onset_s(recording: &Recording, recipe: &Recipe) -> anyhow::Result<Option<f64>> {
     let mut first: Option<f64> = None;
     for map in recipe.map.iter().filter(|map| map.is_muscle()) {
@@ -183,8 +180,11 @@ mod tests {
             t if t < 1.5 => 0.4,
             _ => 0.9,
         });
-        let crest = crest(&recording, &recipe).unwrap().expect("there is one");
-        assert!((crest.peak_s - 0.999).abs() < 0.002 && (crest.peak_ratio - 0.6).abs() < 0.01, "{crest:?}");
+        let found = crest(&recording, &recipe).unwrap().expect("there is one");
+        assert!((found.peak_s - 0.999).abs() < 0.002 && (found.peak_ratio - 0.6).abs() < 0.01, "{found:?}");
+        // A finger that never slides.
+        let (recording, recipe) = rig(|t| 0.1 + 0.05 * (40.0 * t).sin());
+        assert_eq!(crest(&recording, &recipe).unwrap(), None);
     }
 
     #[test]
@@ -203,11 +203,5 @@ mod tests {
         };
         assert!(told("")[0].contains("2500.000 N"), "{:?}", told(""));
         assert_eq!(told("scale = 0.001"), Vec::<String>::new());
-    }
-
-    #[test]
-    fn a_finger_that_never_slides_has_no_crest() {
-        let (recording, recipe) = rig(|t| 0.1 + 0.05 * (40.0 * t).sin());
-        assert_eq!(crest(&recording, &recipe).unwrap(), None);
     }
 }

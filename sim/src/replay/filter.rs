@@ -2,45 +2,31 @@
 
 use biquad::{Biquad, Coefficients, DirectForm2Transposed, Q_BUTTERWORTH_F64, ToHertz, Type};
 
-#[derive(Clone, Debug)]
-pub struct Filter(DirectForm2Transposed<f64>);
-
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pass {
     Low,
     High,
 }
 
-impl Filter {
-    /// A filter with this corner. None if the corner is not below half the rate: then there is nothing to filter.
-    pub fn new(pass: Pass, corner_hz: f64, rate_hz: f64) -> Option<Self> {
-        let kind = match pass {
-            Pass::Low => Type::LowPass,
-            Pass::High => Type::HighPass,
-        };
-        let valid = corner_hz > 0.0 && corner_hz < rate_hz / 2.0;
-        let coefficients = valid.then(|| {
-            Coefficients::<f64>::from_params(kind, rate_hz.hz(), corner_hz.hz(), Q_BUTTERWORTH_F64)
-        })?;
-        Some(Self(DirectForm2Transposed::new(coefficients.ok()?)))
-    }
-
-    pub fn apply(mut self, corner_hz: f64, rate_hz: f64, values: &mut [f64]) {
-        let Some(&first) = values.first() else { return };
-        // A Butterworth pair has forgotten all but e^-40 of its past after ten periods of its corner.
-        let settle = (10.0 * rate_hz / corner_hz) as usize;
-        for _ in 0..settle {
-            self.0.run(first);
-        }
-        for value in values {
-            *value = self.0.run(*value);
-        }
-    }
-}
-
+/// Filters a series by a second-order Butterworth. A corner that is not below half the rate leaves it as it is.
 pub fn pass(pass: Pass, corner_hz: f64, rate_hz: f64, values: &mut [f64]) {
-    if let Some(filter) = Filter::new(pass, corner_hz, rate_hz) {
-        filter.apply(corner_hz, rate_hz, values);
+    let kind = match pass {
+        Pass::Low => Type::LowPass,
+        Pass::High => Type::HighPass,
+    };
+    let Some(&first) = values.first().filter(|_| corner_hz > 0.0 && corner_hz < rate_hz / 2.0) else {
+        return;
+    };
+    let coefficients =
+        Coefficients::<f64>::from_params(kind, rate_hz.hz(), corner_hz.hz(), Q_BUTTERWORTH_F64);
+    let Ok(coefficients) = coefficients else { return };
+    let mut filter = DirectForm2Transposed::<f64>::new(coefficients);
+    // A Butterworth pair has forgotten all but e^-40 of its past after ten periods of its corner.
+    for _ in 0..(10.0 * rate_hz / corner_hz) as usize {
+        filter.run(first);
+    }
+    for value in values {
+        *value = filter.run(*value);
     }
 }
 

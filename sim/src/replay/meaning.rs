@@ -5,7 +5,6 @@ use toml::Spanned;
 
 use crate::recipe;
 
-/// What the hand does, or must not do.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Motion {
@@ -14,23 +13,12 @@ pub enum Motion {
     Open,
 }
 
-impl Motion {
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Rest => "rest",
-            Self::Close => "close",
-            Self::Open => "open",
-        }
-    }
-}
-
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Meaning {
     /// Names of the recordings; `*` and `?` match as in a shell. The first row that matches counts.
     pub named: Spanned<String>,
     pub wants: Motion,
-    /// What the hand must not do meanwhile.
     pub never: Vec<Motion>,
 }
 

@@ -15,19 +15,14 @@ use super::{ReplayPlant, library};
 #[derive(Clone, Debug)]
 pub struct Muscles {
     pub duration_s: f64,
-    /// Time since the recording's first row, s, negative while the front end settles; and both, uV, flexor first, none where a
-    /// sensor gives no number.
+    /// Time since the first row, s, negative while the front end settles; flexor and extensor, uV, None where there is no number.
     pub pairs: Vec<(f64, [Option<i32>; 2])>,
 }
 
 impl Muscles {
-    /// Reads a recording through its recipe's front end; `recipe` in place of the one that its name calls for.
     pub fn read(path: &Path, recipe: Option<&str>, seed: u64) -> anyhow::Result<Self> {
         let (recording, named) = library::read(path, recipe)?;
-        let mut plant = match named {
-            Some(named) => ReplayPlant::new(&recording, &named.recipe, seed)?,
-            None => ReplayPlant::plain(&recording, seed)?,
-        };
+        let mut plant = ReplayPlant::of(&recording, named.as_ref(), seed)?;
         let from_s = plant.time_zero_s() - recording.first_s();
         let mut pair = [None; 2];
         let mut pairs = Vec::new();

@@ -7,16 +7,15 @@ use rand_distr::{Distribution, Normal};
 use tenax_hal_shim::channel::{self, CHANNELS, FSR, SCAN_HZ};
 use tenax_hal_shim::front_end::{fsr_mv, fsr_quadrants_n};
 use tenax_hal_shim::motor::MotorDrive;
-use tenax_logic::emg::model::EmgModel;
-use tenax_scene::plant::{Calibrated, Pins, Plant};
+use tenax_scene::plant::{Pins, Plant};
 
 use super::filter::{Pass, pass};
 use super::recipe::{ForceMap, HoldForce, Map, RemoveOffset};
 use super::resample::Grid;
 use super::{Recipe, Recording};
+use crate::recipe::Named;
 
-/// Noise of the converter and its wiring on every pin, mV rms: half a code (assumed). Without it a channel that the
-/// recording lacks would read one code for ever, as only a broken sensor does.
+/// Noise on every pin, mV rms: half a code (assumed). One code for ever would be a broken sensor.
 const PIN_NOISE_MV: f64 = 0.4;
 
 const PLAIN_LEAD_IN_S: f64 = 1.0;
@@ -67,10 +66,18 @@ pub struct ReplayPlant {
     next: usize,
     rng: ChaCha8Rng,
     noise_v: Normal<f64>,
-    pub calibrated: Option<EmgModel>,
 }
 
 impl ReplayPlant {
+    pub fn of(recording: &Recording, named: Option<&Named<Recipe>>, seed: u64) -> anyhow::Result<Self> {
+        match named {
+            Some(Named { name, recipe }) => {
+                Self::new(recording, recipe, seed).with_context(|| format!("recipe {name}"))
+            }
+            None => Self::plain(recording, seed),
+        }
+    }
+
     pub fn new(recording: &Recording, recipe: &Recipe, seed: u64) -> anyhow::Result<Self> {
         let mut plant =
             Self::empty(recording, *recipe.lead_in_s.get_ref(), *recipe.lead_out_s.get_ref(), seed);
@@ -138,7 +145,6 @@ impl ReplayPlant {
             next: 0,
             rng: ChaCha8Rng::seed_from_u64(seed),
             noise_v: Normal::new(0.0, PIN_NOISE_MV / 1e3).expect("a positive, finite deviation"),
-            calibrated: None,
         }
     }
 
@@ -244,10 +250,6 @@ impl Plant for ReplayPlant {
         &self.pins
     }
 
-    fn calibrated(&self) -> Option<Calibrated> {
-        self.calibrated.map(|model| Calibrated::Words(model.to_words()))
-    }
-
     fn duration_s(&self) -> f64 {
         self.grid.scans as f64 / f64::from(SCAN_HZ)
     }
@@ -258,11 +260,7 @@ fn rest_v(index: usize) -> f64 {
 }
 
 fn mean<'a>(values: impl Iterator<Item = &'a f64>) -> Option<f64> {
-    let (mut sum, mut count) = (0.0, 0u32);
-    for value in values {
-        sum += value;
-        count += 1;
-    }
+    let (sum, count) = values.fold((0.0, 0u32), |(sum, count), value| (sum + value, count + 1));
     (count > 0).then(|| sum / f64::from(count))
 }
 

@@ -1,13 +1,11 @@
-//! A recipe: the analogue front end that stands between a recording's columns and this board's pins.
-//!
-//! `docs/recipes.md` is the page for people who write one.
+//! A recipe: the analogue front end between a recording's columns and this board's pins (`docs/recipes.md`).
 
 use serde::Deserialize;
 use tenax_hal_shim::channel;
 use toml::Spanned;
 
 use super::meaning::Meaning;
-use crate::recipe::{self, Checked, Kind};
+use crate::recipe::{self, Checked, Kind, if_within, within};
 
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -20,7 +18,7 @@ pub struct Recipe {
     #[serde(default)]
     pub time: Time,
     /// How long the first row is held before the recording begins, s: the fingertip's filters and baselines settle in it.
-    #[serde(default = "default_lead_in_s")]
+    #[serde(default = "recipe::one")]
     pub lead_in_s: Spanned<f64>,
     /// How long the last row is held after the recording ends, s.
     #[serde(default = "default_lead_out_s")]
@@ -29,7 +27,6 @@ pub struct Recipe {
     pub map: Vec<Map>,
     /// Columns in newtons that press the force sensor.
     pub force: Option<ForceMap>,
-    /// What is assumed of signals that the recording lacks.
     #[serde(default)]
     pub hold: Hold,
     #[serde(default)]
@@ -39,7 +36,6 @@ pub struct Recipe {
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Time {
-    /// Its name. If not given, `t` or `t_s`.
     pub column: Option<String>,
     #[serde(default)]
     pub unit: TimeUnit,
@@ -72,13 +68,11 @@ pub struct Map {
     pub column: String,
     pub channels: Vec<Spanned<String>>,
     pub remove_offset: Option<RemoveOffset>,
-    /// Corner of a second-order Butterworth high-pass, Hz.
+    /// Corners of second-order Butterworth filters, Hz; the envelope's low-pass stands behind the rectifier.
     pub high_pass_hz: Option<Spanned<f64>>,
-    /// Corner of a second-order Butterworth low-pass, Hz.
     pub low_pass_hz: Option<Spanned<f64>>,
     #[serde(default)]
     pub rectify: bool,
-    /// Corner of a second-order Butterworth low-pass behind the rectifier, Hz.
     pub envelope_hz: Option<Spanned<f64>>,
     pub gain: Spanned<f64>,
     pub offset_v: Option<Spanned<f64>>,
@@ -94,21 +88,19 @@ pub enum RemoveOffset {
     Value(f64),
 }
 
-/// Columns in newtons that press the four quadrants through the tilting element
-/// ([`front_end`](tenax_hal_shim::front_end)).
+/// Columns in newtons that press the four quadrants ([`front_end`](tenax_hal_shim::front_end)).
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ForceMap {
     pub normal: String,
     pub shear_x: String,
     pub shear_y: Option<String>,
-    #[serde(default = "default_scale")]
+    #[serde(default = "recipe::one")]
     pub scale: Spanned<f64>,
     /// Corner of a second-order Butterworth low-pass, Hz: the rubber of the tilting element.
     pub low_pass_hz: Option<Spanned<f64>>,
 }
 
-/// What is assumed of signals that the recording lacks. Every assumption says why.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Hold {
@@ -130,7 +122,6 @@ pub struct HoldForce {
     /// How long the load then takes to come on, s.
     #[serde(default)]
     pub ramp_s: f64,
-    /// Why this may be assumed.
     pub why: String,
 }
 
@@ -139,21 +130,11 @@ pub struct HoldForce {
 pub struct HoldPins {
     pub channels: Vec<Spanned<String>>,
     pub volts: Spanned<f64>,
-    /// Why this may be assumed.
     pub why: String,
-}
-
-// A default has no place in the file; nothing that is wrong can come from one.
-fn default_lead_in_s() -> Spanned<f64> {
-    Spanned::new(0..0, 1.0)
 }
 
 fn default_lead_out_s() -> Spanned<f64> {
     Spanned::new(0..0, 0.2)
-}
-
-fn default_scale() -> Spanned<f64> {
-    Spanned::new(0..0, 1.0)
 }
 
 fn default_clip_v() -> Spanned<[f64; 2]> {
@@ -208,9 +189,7 @@ impl Kind for Recipe {
             claim(&mut taken, &pins.channels)?;
         }
         if let Some(force) = &self.force {
-            if *force.scale.get_ref() == 0.0 || !force.scale.get_ref().is_finite() {
-                return Err((force.scale.span(), "scale must be a number other than 0".into()));
-            }
+            recipe::check_scale(&force.scale)?;
             corner(&force.low_pass_hz, "low_pass_hz")?;
         }
         match (&self.force, &self.hold.force) {
@@ -235,20 +214,14 @@ impl Map {
         corner(&self.low_pass_hz, "low_pass_hz")?;
         corner(&self.envelope_hz, "envelope_hz")?;
         if !self.gain.get_ref().is_finite() {
-            return Err((
-                self.gain.span(),
-                "gain must be a finite number, in volts per unit of the column".into(),
-            ));
+            let what = "gain must be a finite number, in volts per unit of the column";
+            return Err((self.gain.span(), what.into()));
         }
-        if let Some(offset_v) = &self.offset_v {
-            within(offset_v, "offset_v", 0.0, 3.3)?;
-        }
+        if_within(&self.offset_v, "offset_v", 0.0, 3.3)?;
         let [low, high] = *self.clip_v.get_ref();
         if !(0.0..=3.3).contains(&low) || !(0.0..=3.3).contains(&high) || low >= high {
-            return Err((
-                self.clip_v.span(),
-                "clip_v is [lowest, highest] voltage at the pin, between 0 and 3.3".into(),
-            ));
+            let what = "clip_v is [lowest, highest] voltage at the pin, between 0 and 3.3";
+            return Err((self.clip_v.span(), what.into()));
         }
         Ok(())
     }
@@ -267,22 +240,13 @@ impl HoldForce {
     }
 }
 
-fn within(value: &Spanned<f64>, name: &str, low: f64, high: f64) -> Checked {
-    if (low..=high).contains(value.get_ref()) {
-        return Ok(());
-    }
-    Err((value.span(), format!("{name} is {}; {low} to {high} is allowed", value.get_ref())))
-}
-
 fn corner(value: &Option<Spanned<f64>>, name: &str) -> Checked {
-    value.as_ref().map_or(Ok(()), |value| within(value, name, 0.01, 3_000.0))
+    if_within(value, name, 0.01, 3_000.0)
 }
 
-/// Every channel must exist and be claimed once.
 fn claim<'a>(taken: &mut Vec<&'a str>, channels: &'a [Spanned<String>]) -> Checked {
     for name in channels {
-        let known = channel::by_name(name.get_ref()).is_some();
-        if !known {
+        if channel::by_name(name.get_ref()).is_none() {
             let names: Vec<&str> = channel::CHANNELS.iter().map(|channel| channel.name).collect();
             let what =
                 format!("no channel is called `{}`; the channels are {}", name.get_ref(), names.join(", "));

@@ -1,6 +1,7 @@
 //! A recording: a CSV file with a time column and one column a signal.
 
 use std::io::Read;
+use std::ops::RangeInclusive;
 use std::path::Path;
 
 use csv::StringRecord;
@@ -20,27 +21,8 @@ pub struct Recording {
     signals: Vec<Signal>,
 }
 
-/// A column. What is wrong in it is said when it is asked for, so that a column of words which nobody maps does no harm.
-#[derive(Clone, Debug, Default)]
-struct Signal {
-    values: Vec<f64>,
-    wrong: Option<(u64, String)>,
-}
-
-impl Signal {
-    fn take(&mut self, column: &str, cell: &str, line: u64) {
-        if self.wrong.is_some() {
-            return;
-        }
-        match number(column, cell) {
-            Ok(value) => self.values.push(value),
-            Err(what) => {
-                self.wrong = Some((line, what));
-                self.values = Vec::new();
-            }
-        }
-    }
-}
+/// Values of a column, or the line and the message of its first mistake: a column of words which nobody maps does no harm.
+type Signal = Result<Vec<f64>, (u64, String)>;
 
 impl Recording {
     pub fn read(path: &Path, time: &Time) -> Result<Self, CsvError> {
@@ -48,7 +30,6 @@ impl Recording {
         Self::timed(source, &file, time)
     }
 
-    /// Reads from anything, with seconds in `t` or `t_s`; `file` is what errors call it.
     pub fn parse(source: impl Read, file: &str) -> Result<Self, CsvError> {
         Self::timed(source, file, &Time::default())
     }
@@ -70,7 +51,7 @@ impl Recording {
                 return Err(CsvError::Row { file: file.to_owned(), line: 1, what });
             }
         }
-        let signals = vec![Signal::default(); columns.len()];
+        let signals = vec![Ok(Vec::new()); columns.len()];
         let mut recording = Self { file: file.to_owned(), columns, time: 0, t_s: Vec::new(), signals };
         recording.time = match &time.column {
             Some(name) => recording
@@ -95,7 +76,12 @@ impl Recording {
             }
             recording.t_s.push(t_s);
             for ((signal, column), cell) in recording.signals.iter_mut().zip(&recording.columns).zip(&row) {
-                signal.take(column, cell, line);
+                if let Ok(values) = signal {
+                    match number(column, cell) {
+                        Ok(value) => values.push(value),
+                        Err(what) => *signal = Err((line, what)),
+                    }
+                }
             }
         }
         let rows = recording.t_s.len();
@@ -140,6 +126,10 @@ impl Recording {
         self.t_s[0]
     }
 
+    pub fn span_s(&self) -> RangeInclusive<f64> {
+        self.first_s()..=self.t_s[self.t_s.len() - 1]
+    }
+
     pub fn duration_s(&self) -> f64 {
         self.t_s[self.t_s.len() - 1] - self.t_s[0]
     }
@@ -157,13 +147,8 @@ impl Recording {
         let Some(place) = self.place(column) else {
             return Err(self.no_column(&format!("no column `{column}`")));
         };
-        let signal = &self.signals[place];
-        match &signal.wrong {
-            Some((line, what)) => {
-                Err(CsvError::Row { file: self.file.clone(), line: *line, what: what.clone() })
-            }
-            None => Ok(signal.values.clone()),
-        }
+        let row = |(line, what)| CsvError::Row { file: self.file.clone(), line, what };
+        self.signals[place].clone().map_err(row)
     }
 
     fn place(&self, column: &str) -> Option<usize> {

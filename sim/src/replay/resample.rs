@@ -1,8 +1,5 @@
-//! From uneven rows to the even instants of the scans.
-//!
-//! A recording is drawn as straight lines between its rows, filtered at a whole multiple of the scan rate that is at
-//! least twice the recording's own, and thinned to the scans only after its front end: so filters have true corners, and
-//! a recording that is faster than the scans is not folded before its low-pass.
+//! From uneven rows to the even instants of the scans: straight lines between rows, filtered at a whole multiple of the scan rate that
+//! is at least twice the recording's own, and thinned to the scans behind the front end.
 
 use tenax_hal_shim::channel::SCAN_HZ;
 
@@ -29,9 +26,7 @@ impl Grid {
         f64::from(SCAN_HZ) * self.per_scan as f64
     }
 
-    /// The series on the grid: straight lines between rows, the first and last row held outside.
-    ///
-    /// `t_s` must not decrease and must be as long as `values`.
+    /// The series on the grid: straight lines between rows, the first and last row held outside. `t_s` must not decrease.
     pub fn draw(&self, t_s: &[f64], values: &[f64]) -> Vec<f64> {
         let step_s = 1.0 / self.rate_hz();
         let mut next = 0;

@@ -13,8 +13,7 @@ use crate::timeline::{frame_end_s, ticks};
 
 /// The force that a pulse added is there after this long, frames: the motor's dead time and the settling.
 const SETTLED_FRAMES: u32 = FRAME_HZ * 15 / 100;
-/// A pulse that begins this long before a micro onset answers that slip, s: a warning sees it come. What a pulse adds this long
-/// after a slip's end was still meant for it: the motor's dead time.
+/// Time before a micro onset, and after a slip's end, in which a pulse still answers the slip, s.
 pub(super) const BEFORE_S: f64 = 0.050;
 /// Safety ratio: a grip up to 1.1 times the largest need within [`ABOUT_S`] counts as needed.
 const ABOUT_PART: f64 = 1.1;
@@ -23,8 +22,7 @@ const ABOUT_S: f64 = 1.0;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Sums {
     pub added_n: f64,
-    /// Those of them that were added while nothing slipped or was about to: no slip within 50 ms, and the grip at 1.1 times what is
-    /// needed within a second or above it. Null where nobody knows when it slipped.
+    /// Those added with no slip within 50 ms, above 1.1 times the need of the next second. Null where the truth is not known.
     pub added_without_need_n: Option<f64>,
     pub relaxed_n: f64,
 }
@@ -103,7 +101,6 @@ impl Grips {
         (t_s * f64::from(TRACE_HZ)) as usize
     }
 
-    /// The rows of a stretch with its settling, and the place of the first.
     fn rows(&self, stretch: &Stretch) -> (usize, &[[f32; 2]]) {
         let (from, to) =
             (Self::row(frame_end_s(stretch.from)), Self::row(frame_end_s(stretch.to + SETTLED_FRAMES)));

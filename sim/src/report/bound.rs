@@ -7,14 +7,12 @@ use super::fate::Fate;
 
 pub const SAME_MM: f64 = 0.02;
 
-/// The bound's run, and how the real one compares. No ratio is below 0.98 (the plan's part above the edge of sliding) unless the
-/// bound is wrong.
+/// The bound's run, and how the real one compares. A ratio below 0.98 is an error of the bound.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Bound {
     pub kept: Option<bool>,
     pub distance_mm: Option<f64>,
-    /// The greatest grip force, N: the least with which any grip of this gripper keeps the object from sliding, or, where the
-    /// run pressed less, from sliding further than it did.
+    /// The least greatest force that keeps the object, N, or lets it slide no further than the run did where that pressed less.
     pub peak_force_n: Option<f64>,
     /// The run's slip distance over the bound's. 1 where neither object slid by 0.02 mm; null where only the run's did.
     pub distance_ratio: Option<f64>,
@@ -45,7 +43,6 @@ impl Bound {
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Control {
-    /// What it is: `no reflex`, `constant grip`, `s1 alone`, `without s1`.
     pub name: String,
     pub distance_mm: f64,
     pub peak_force_n: Option<f64>,

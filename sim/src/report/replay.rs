@@ -1,19 +1,16 @@
 //! What only a recording has to tell: its own peak and onset beside the fingertip's detections.
 
-use std::ops::RangeInclusive;
 use std::path::Path;
 
 use serde::Serialize;
 use tenax_hal_shim::detector::DetectorId;
-use tenax_hal_shim::wire::Slow;
 
 use super::wearer::Wearer;
-use crate::board::Recorder;
 use crate::recipe::Named;
 use crate::replay::facts::{Crest, crest, doubts, muscle_onset_s};
 use crate::replay::meaning::{Meaning, Motion};
 use crate::replay::{Recipe, Recording};
-use crate::timeline::{Timeline, frame_end_s};
+use crate::timeline::Timeline;
 
 #[derive(Clone, Debug, Serialize)]
 pub struct Replay {
@@ -36,7 +33,6 @@ pub struct Replay {
 #[derive(Clone, Debug, Serialize)]
 pub struct Meant {
     pub wants: Motion,
-    /// What it must not do.
     pub never: Vec<Motion>,
     /// For how long it did what the wearer wants, s. Null where they want it to rest.
     pub wanted_s: Option<f64>,
@@ -76,37 +72,12 @@ pub struct Force {
 
 #[derive(Clone, Debug, Serialize)]
 pub struct Muscle {
-    /// When the muscle became active in the recording itself, s: the 50 ms centred mean of the rectified signal, at the
-    /// recipe's gain, passes the gate's threshold.
+    /// Onset in the recording itself, s: see [`muscle_onset_s`].
     pub onset_s: Option<f64>,
     pub noticed_s: Option<f64>,
     pub onset_delay_ms: Option<f64>,
     pub active_part: f64,
     pub reflex_while_active: u64,
-}
-
-#[derive(Clone, Debug)]
-pub struct ActivePart {
-    zero_s: f64,
-    within_s: RangeInclusive<f64>,
-    all: u32,
-    active: u32,
-}
-
-impl ActivePart {
-    pub fn new(recording: &Recording, zero_s: f64) -> Self {
-        let first_s = recording.first_s();
-        Self { zero_s, within_s: first_s..=first_s + recording.duration_s(), all: 0, active: 0 }
-    }
-}
-
-impl Recorder for ActivePart {
-    fn slow(&mut self, slow: &Slow) {
-        if self.within_s.contains(&(self.zero_s + frame_end_s(slow.frame))) {
-            self.all += 1;
-            self.active += u32::from(slow.wearer_active);
-        }
-    }
 }
 
 impl Replay {
@@ -115,11 +86,22 @@ impl Replay {
         named: Option<&Named<Recipe>>,
         lead_in_s: f64,
         timeline: &Timeline,
-        active: &ActivePart,
         wearer: &Wearer,
     ) -> anyhow::Result<Self> {
         let recipe = named.map(|named| &named.recipe);
         let used = |column: &str| recipe.is_none_or(|recipe| recipe.uses(column));
+        let muscle = |recipe: &Recipe| -> anyhow::Result<Muscle> {
+            let (onset_s, noticed_s) = (muscle_onset_s(recording, recipe)?, wearer.active_first_s);
+            Ok(Muscle {
+                onset_s,
+                noticed_s,
+                onset_delay_ms: onset_s.zip(noticed_s).map(|(onset, noticed)| (noticed - onset) * 1e3),
+                active_part: timeline.active_part(recording.span_s()),
+                reflex_while_active: wearer.reflex_while_active,
+            })
+        };
+        let muscle = recipe.filter(|recipe| recipe.maps_a_muscle()).map(muscle).transpose()?;
+        let force = |recipe| -> anyhow::Result<Force> { Ok(Force::new(crest(recording, recipe)?, timeline)) };
         Ok(Self {
             recording: recording.file().to_owned(),
             recipe: named.map(|named| named.name.clone()),
@@ -130,18 +112,8 @@ impl Replay {
             unused_columns: recording.signals().filter(|column| !used(column)).map(str::to_owned).collect(),
             assumed: recipe.map_or_else(Vec::new, assumed),
             doubts: recipe.map_or_else(|| Ok(Vec::new()), |recipe| doubts(recording, recipe))?,
-            force: match recipe {
-                Some(recipe) if recipe.force.is_some() => {
-                    Some(Force::new(crest(recording, recipe)?, timeline))
-                }
-                _ => None,
-            },
-            muscle: match recipe {
-                Some(recipe) if recipe.maps_a_muscle() => {
-                    Some(Muscle::new(muscle_onset_s(recording, recipe)?, active, wearer))
-                }
-                _ => None,
-            },
+            force: recipe.filter(|recipe| recipe.force.is_some()).map(force).transpose()?,
+            muscle,
             meant: recipe
                 .and_then(|recipe| recipe.meaning_of(file_name(recording)))
                 .map(|meaning| Meant::new(meaning, wearer)),
@@ -151,8 +123,7 @@ impl Replay {
 
 impl Force {
     fn new(crest: Option<Crest>, timeline: &Timeline) -> Self {
-        let first = |id| timeline.believed(id).first().copied();
-        let (s1, s2) = (first(DetectorId::S1), first(DetectorId::S2));
+        let [s1, s2] = [DetectorId::S1, DetectorId::S2].map(|id| timeline.believed(id).first().copied());
         let before_ms = |first: Option<f64>| Some((crest?.peak_s - first?) * 1e3);
         Self {
             peak_ratio: crest.map(|crest| crest.peak_ratio),
@@ -161,19 +132,6 @@ impl Force {
             s2_before_peak_ms: before_ms(s2),
             s1_first_s: s1,
             s1_before_peak_ms: before_ms(s1),
-        }
-    }
-}
-
-impl Muscle {
-    fn new(onset_s: Option<f64>, active: &ActivePart, wearer: &Wearer) -> Self {
-        let noticed_s = wearer.active_first_s;
-        Self {
-            onset_s,
-            noticed_s,
-            onset_delay_ms: onset_s.zip(noticed_s).map(|(onset, noticed)| (noticed - onset) * 1e3),
-            active_part: f64::from(active.active) / f64::from(active.all.max(1)),
-            reflex_while_active: wearer.reflex_while_active,
         }
     }
 }

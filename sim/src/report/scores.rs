@@ -62,13 +62,11 @@ impl Slip {
 pub struct Detector {
     pub first_s: Option<f64>,
     pub detections: usize,
-    /// How often that was outside every slip, and not while the wearer moved the hand. Null where nobody knows when it
-    /// slipped.
+    /// Detections outside every slip, and not while the wearer moved the hand. Null where the truth is not known.
     pub false_alarms: Option<usize>,
     pub said: usize,
     pub acted: usize,
-    /// Its event scores: slips caught, early, late, said before, missed; false alarms by what was going on. Null where nobody
-    /// knows when it slipped.
+    /// Event scores: slips by outcome, false alarms by what was going on. Null where the truth is not known.
     pub events: Option<Card>,
 }
 

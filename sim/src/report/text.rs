@@ -6,6 +6,7 @@ use tenax_hal_shim::detector::DetectorId;
 
 use super::replay::Replay;
 use super::{CYCLES_PER_INSTRUCTION, Report};
+use crate::replay::meaning::Motion;
 
 #[derive(Clone, Copy, Debug)]
 pub struct Text<'a>(pub &'a Report);
@@ -190,8 +191,9 @@ fn replay(f: &mut Formatter<'_>, replay: &Replay) -> fmt::Result {
         )?;
     }
     if let Some(meant) = &replay.meant {
-        let never: Vec<&str> = meant.never.iter().map(|motion| motion.name()).collect();
-        let (wants, never) = (meant.wants.name(), never.join(" or "));
+        let name = |motion: &Motion| format!("{motion:?}").to_lowercase();
+        let never: Vec<String> = meant.never.iter().map(name).collect();
+        let (wants, never) = (name(&meant.wants), never.join(" or "));
         let did = meant.wanted_s.map_or(String::new(), |wanted_s| format!("it did for {wanted_s:.2} s; "));
         let wrong = Or(Some(meant.wrong_ms), "ms");
         line!(f, "meant", "the hand shall {wants} and never {never}: {did}wrong for {wrong:.0} at most")?;

@@ -11,7 +11,7 @@ use tenax_hal_shim::frame::Scan;
 use tenax_hal_shim::front_end::MYO_REST_MV;
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::schedule::SCHEDULE;
-use tenax_hal_shim::wire::{Slow, TickRecord};
+use tenax_hal_shim::wire::Slow;
 use tenax_hal_shim::words::DriveSource;
 use tenax_logic::emg::decide::Decide;
 use tenax_logic::emg::level::FLOOR_UV;
@@ -26,8 +26,8 @@ const ON_MV: i64 = 160;
 pub struct Wearer {
     pub none: bool,
     pub reflex_while_active: u64,
-    /// The longest time from an opening wish at the pins to the motor opening, ms: from the first reading that is a fifth
-    /// above the calibrated opening, in its direction. Null where nobody wished to open, or nobody is calibrated.
+    /// The longest time from a reading a fifth above the calibrated opening to the motor opening, ms. Null where nobody wished to open, or
+    /// nobody is calibrated.
     pub open_latency_ms: Option<f64>,
     pub active_first_s: Option<f64>,
     pub active_permille: u64,
@@ -106,8 +106,8 @@ pub struct Judge {
     /// When which electrode is known to be off, s: what it gives is no activity.
     pub deaf: Vec<(usize, Range<f64>)>,
     scans: Vec<Scan>,
-    frames: usize,
-    active: Frames,
+    /// Whether a muscle was active at the pins, by frame.
+    active: Vec<bool>,
     wish_since: Option<usize>,
     opened: bool,
     slowest: Option<usize>,
@@ -143,48 +143,15 @@ impl Judge {
         });
         Self { on_mv, opening: calibrated.map(Opening::of), ..Self::default() }
     }
-}
 
-impl Recorder for Judge {
-    fn scan(&mut self, codes: &Scan, drive: MotorDrive, _slipping: bool) {
-        self.scans.push(*codes);
-        if self.scans.len() == SCANS_PER_FRAME {
-            self.muscles.take(self.frames, &self.scans);
-            self.scans.clear();
-            self.frame(drive.opens());
-        }
-    }
-
-    fn slow(&mut self, slow: &Slow) {
-        self.slow_frames += 1;
-        self.active_slow_frames += u64::from(slow.wearer_active);
-        for (_, tick) in ticks(slow) {
-            let wearers = tick.source == DriveSource::Wearer;
-            self.closed.push(wearers && tick.drive.closes());
-            self.opened_by_muscle.push(wearers && tick.drive.opens());
-        }
-        let by_reflex =
-            |tick: &TickRecord| tick.source == DriveSource::Reflex && tick.drive != MotorDrive::Coast;
-        for (frame, _) in ticks(slow).filter(|(_, tick)| by_reflex(tick)) {
-            self.reflex_ticks += 1;
-            self.reflex_while_active += u64::from(self.active.contains(frame as usize));
-        }
-    }
-}
-
-impl Judge {
     fn frame(&mut self, opens: bool) {
-        let frame = self.frames;
-        self.frames += 1;
+        let frame = self.active.len();
         let t_s = frame as f64 / f64::from(FRAME_HZ);
         let hears = |n: usize| !self.deaf.iter().any(|(deaf, s)| *deaf == n && s.contains(&t_s));
-        if self.muscles.active(self.on_mv, hears) {
-            self.active.push(frame);
-        }
+        self.active.push(self.muscles.active(self.on_mv, hears));
         let wishes = self.opening.is_some_and(|opening| opening.is_wished(self.muscles));
         match (wishes, opens) {
-            // Interrupted: a wish that has taken effect and is not proven yet may wait for its proof, and one of a sensor that is
-            // lost rests.
+            // A wish that has taken effect may wait for its proof, and one of a lost sensor rests.
             (true, false) if self.opened => {}
             (true, false) => self.wish_since = self.wish_since.or(Some(frame)),
             // Answered; or given up before it was: then it waited for as long as it lasted.
@@ -200,7 +167,6 @@ impl Judge {
     pub fn verdict(&self, active_first_s: Option<f64>, faults: usize) -> Wearer {
         let seconds = |ticks: u64| ticks as f64 / f64::from(FRAME_HZ);
         Wearer {
-            none: false,
             reflex_while_active: self.reflex_while_active,
             open_latency_ms: self.slowest.map(|frames| frames as f64 * 1e3 / f64::from(FRAME_HZ)),
             active_first_s,
@@ -211,25 +177,32 @@ impl Judge {
             longest_open_ms: 1e3 * seconds(self.opened_by_muscle.longest),
             longest_close_ms: 1e3 * seconds(self.closed.longest),
             faults,
-            vibration_steps: 0,
-            vibration_s: 0.0,
+            ..Wearer::default()
         }
     }
 }
 
-#[derive(Clone, Debug, Default)]
-struct Frames(Vec<Range<usize>>);
-
-impl Frames {
-    fn push(&mut self, frame: usize) {
-        match self.0.last_mut() {
-            Some(stretch) if stretch.end == frame => stretch.end += 1,
-            _ => self.0.push(frame..frame + 1),
+impl Recorder for Judge {
+    fn scan(&mut self, codes: &Scan, drive: MotorDrive, _slipping: bool) {
+        self.scans.push(*codes);
+        if self.scans.len() == SCANS_PER_FRAME {
+            self.muscles.take(self.active.len(), &self.scans);
+            self.scans.clear();
+            self.frame(drive.opens());
         }
     }
 
-    fn contains(&self, frame: usize) -> bool {
-        let begun = self.0.partition_point(|stretch| stretch.start <= frame);
-        begun.checked_sub(1).is_some_and(|last| self.0[last].contains(&frame))
+    fn slow(&mut self, slow: &Slow) {
+        self.slow_frames += 1;
+        self.active_slow_frames += u64::from(slow.wearer_active);
+        for (frame, tick) in ticks(slow) {
+            if tick.source == DriveSource::Reflex && tick.drive != MotorDrive::Coast {
+                self.reflex_ticks += 1;
+                self.reflex_while_active += u64::from(self.active.get(frame as usize) == Some(&true));
+            }
+            let wearers = tick.source == DriveSource::Wearer;
+            self.closed.push(wearers && tick.drive.closes());
+            self.opened_by_muscle.push(wearers && tick.drive.opens());
+        }
     }
 }

@@ -1,10 +1,11 @@
 //! What was going on, for false alarms to be counted by.
 
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 use tenax_scene::SceneFile;
 use tenax_scene::file::Happening;
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Doing {
     Hold,
     Pour,
@@ -14,30 +15,14 @@ pub enum Doing {
 }
 
 impl Doing {
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Hold => "hold",
-            Self::Pour => "pour",
-            Self::Move => "move",
-            Self::Disturb => "disturb",
-            Self::Unknown => "unknown",
-        }
-    }
-
     pub fn named(name: &str) -> Self {
         match name {
-            "pick" => Self::Move,
-            _ => [Self::Hold, Self::Pour, Self::Move, Self::Disturb]
-                .into_iter()
-                .find(|doing| doing.name() == name)
-                .unwrap_or(Self::Unknown),
+            "hold" => Self::Hold,
+            "pour" => Self::Pour,
+            "move" | "pick" => Self::Move,
+            "disturb" => Self::Disturb,
+            _ => Self::Unknown,
         }
-    }
-}
-
-impl Serialize for Doing {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.serialize_str(self.name())
     }
 }
 

@@ -1,8 +1,7 @@
 //! Exact onsets in a data set: one cell of a row holds the slips whose micro onset lies in that row's step.
 //!
-//! `micro/macro/end/mm`, in seconds, joined by `;` where there is more than one. An empty macro onset is micro slip that came
-//! to nothing, an empty end is never, and a `!` behind the millimetres is a slip that was meant. Times have 6 places: finer than
-//! a scan (125 us).
+//! `micro/macro/end/mm`, in seconds with 6 places, joined by `;`. An empty macro onset is micro slip that came to nothing, an empty end
+//! is never, and a `!` behind the millimetres is a slip that was meant.
 
 use std::fmt::Write;
 

@@ -1,6 +1,7 @@
 //! What stands beside a scene's run: its bound, and its controls. Always on the host.
 
 use rayon::prelude::*;
+use tenax_frames::serve::Teller;
 use tenax_hal_shim::detector::{DetectorId, DetectorSet};
 use tenax_scene::bound::Plan;
 use tenax_scene::{SceneFile, World};
@@ -18,7 +19,7 @@ pub fn gripped(file: &SceneFile, seed: u64, grips: Grips) -> Fate {
 
 fn fate(file: &SceneFile, world: World, grips: Grips) -> Fate {
     let span_s = (0.0, seconds_of(frames_in(file.duration_s())));
-    let plant = simulated::run_with(Drawn::new(world, span_s), grips, &mut |_| {});
+    let plant = simulated::run_with(Drawn::new(world, span_s, Teller::default()), grips, &mut |_| {});
     Fate::of(plant.world.truth(), file)
 }
 

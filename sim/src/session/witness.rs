@@ -57,11 +57,7 @@ pub(super) struct Drawn {
 }
 
 impl Drawn {
-    pub(super) fn new(world: World, span_s: (f64, f64)) -> Self {
-        Self::telling(world, span_s, Teller::default())
-    }
-
-    pub(super) fn telling(world: World, span_s: (f64, f64), teller: Teller) -> Self {
+    pub(super) fn new(world: World, span_s: (f64, f64), teller: Teller) -> Self {
         Self { world, needs: Needs::new(span_s), grips: Grips::default(), teller, rows: 0 }
     }
 

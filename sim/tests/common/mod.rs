@@ -1,7 +1,5 @@
 //! What the host tool's tests share.
 
-pub mod onsets;
-
 pub mod hash;
 
 use std::path::{Path, PathBuf};

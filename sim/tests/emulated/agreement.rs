@@ -19,7 +19,6 @@ use tenax_sim::board::simulated;
 use tenax_sim::session;
 
 use crate::hash::{compare, of_run};
-use crate::onsets::held_against_evidence;
 use crate::{Swing, agrees, plain, run, scene, stops};
 
 // Shows B8.
@@ -36,8 +35,6 @@ fn ten_seconds_without_a_lost_code() {
     // Each slow frame carries the CRC of its samples, so this is every code of every channel too.
     assert_eq!(run.slows.len(), 800);
     agrees("swing", run);
-    let onsets = held_against_evidence(&run.slows);
-    assert!(onsets.iter().any(|frames| !frames.is_empty()), "a detector has spoken");
     // The control: one code off by one is another CRC.
     let mut wrong = run.clone();
     wrong.scans[250][3] ^= 1;

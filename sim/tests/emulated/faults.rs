@@ -6,7 +6,6 @@ use tenax_hal_shim::wire::{Answer, Down, EventKind};
 use tenax_hal_shim::words::{Fault, MotorStop};
 use tenax_sim::board::agreement::host_says;
 use tenax_sim::board::emulated::{Mishap, Options};
-use tenax_sim::board::kept::device;
 use tenax_sim::board::simulated;
 
 use crate::{Swing, drives, run, scene, stops};
@@ -28,9 +27,8 @@ fn an_overrun_costs_a_few_frames_and_is_told() {
         run.events.iter().any(|event| matches!(event.kind, EventKind::Fault(Fault::FramesLost { .. })));
     assert!(told, "{:?}", run.events);
 
-    // Sequence numbers kept time and the switches kept step: from the next slow frame on, the samples are those that
-    // the world had at those instants.
-    let host = host_says(&run.scans, device(run.trusts_line, run.calibrated.as_ref()), &[], &[]).slows;
+    // From the next slow frame on, the samples are those that the world had at those instants.
+    let host = host_says(&run).slows;
     let same: Vec<bool> =
         host.iter().zip(&run.slows).map(|(host, image)| host.samples_sum == image.samples_sum).collect();
     assert_eq!((same.len(), same.iter().filter(|same| !**same).count()), (160, 1));

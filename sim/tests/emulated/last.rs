@@ -26,12 +26,8 @@ fn pieces(run: &Run) -> Vec<Last> {
 
 fn kept(line: &[u8]) -> Vec<Received<Up>> {
     let mut inbox = Inbox::default();
-    line.iter()
-        .filter_map(|&byte| inbox.push(byte))
-        .flatten()
-        .map(|heard| heard.received)
-        .filter(|received| !matches!(received.message, Up::Raw(_) | Up::Answer { .. }))
-        .collect()
+    let heard = line.iter().filter_map(|&byte| inbox.push(byte)).flatten().map(|heard| heard.received);
+    heard.filter(|received| !matches!(received.message, Up::Raw(_) | Up::Answer { .. })).collect()
 }
 
 fn lasted_s(run: &Run, start: usize, bytes: &[u8]) -> f64 {

@@ -2,15 +2,12 @@
 #![cfg(feature = "emulator")]
 
 mod agreement;
-mod converter;
 mod coupling;
 mod faults;
 #[path = "../common/hash.rs"]
 mod hash;
 mod last;
 mod link;
-#[path = "../common/onsets.rs"]
-mod onsets;
 mod resets;
 mod store;
 mod streams;
@@ -26,8 +23,8 @@ use tenax_scene::World;
 use tenax_scene::plant::{Pins, Plant};
 use tenax_sim::board::Run;
 use tenax_sim::board::agreement::Agreement;
-use tenax_sim::board::emulated::{self, Options};
-use tenax_sim::session;
+use tenax_sim::board::emulated::Options;
+use tenax_sim::session::{self, Board};
 
 fn image() -> &'static Path {
     static IMAGE: OnceLock<PathBuf> = OnceLock::new();
@@ -38,8 +35,7 @@ fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the package is in the workspace")
 }
 
-/// Every pin swings through the converter's range at its own phase, so that no two ever read alike for long; and somebody
-/// sends commands.
+/// Every pin swings through the converter's range at its own phase; and somebody sends commands.
 struct Swing {
     pins: Pins,
     swings: bool,
@@ -73,11 +69,6 @@ impl Swing {
 
     fn sending(mut self, at_s: f64, command: Down) -> Self {
         self.commands.push((at_s, command));
-        self
-    }
-
-    fn stranger(mut self) -> Self {
-        self.trusts_line = false;
         self
     }
 
@@ -130,7 +121,8 @@ fn scene(name: &str) -> World {
 }
 
 fn run(plant: impl Plant + 'static, options: &Options) -> Run {
-    emulated::run(image(), plant, options, &mut |_| {}).expect("the run").0
+    let board = Board::Emulated { image: image().to_owned(), options: options.clone() };
+    board.run(plant, &mut |_| {}).expect("the run").0
 }
 
 fn plain() -> &'static Run {

@@ -49,10 +49,9 @@ fn kept(run: &Run) -> Vec<Kept> {
 fn power_lost_in_the_middle_of_a_save_leaves_the_setting_before() {
     let plant = |duration_s| Swing::new(duration_s).sending(0.2, s2(500)).at_rest();
     let start = || at_start(&Sectors::blank().saving(Kept::Settings, &settings(400)));
-    // A mark, a tag, a number, two settings, a checksum and a commit. Each cut is tried on the host (host-tests/tests/store/cuts.rs); a
-    // start of the emulated board takes 3 s.
+    // A mark, a tag, a number, two settings, a checksum and a commit; host-tests/tests/store/cuts.rs cuts at each.
     for words in [1, 3, 6] {
-        let options = Options { mishaps: vec![(0.1, Mishap::PowerFails { words })], ..start() };
+        let options = Options { mishaps: vec![(0.1, Mishap::PowerFails(words))], ..start() };
         let run = run(plant(0.5), &options);
         assert_eq!(run.starts, [None, None], "{words} words");
         assert_eq!((s2_at_end(&run), kept(&run)), (Some(400), vec![]), "{words} words");
@@ -61,7 +60,7 @@ fn power_lost_in_the_middle_of_a_save_leaves_the_setting_before() {
         assert_eq!(faults(&run), told, "{words} words");
     }
     // The control: with power for one word more, the new one is used.
-    let mishaps = vec![(0.1, Mishap::PowerFails { words: 7 }), (0.4, Mishap::CoreHangs)];
+    let mishaps = vec![(0.1, Mishap::PowerFails(7)), (0.4, Mishap::CoreHangs)];
     let run = run(plant(0.9), &Options { mishaps, ..start() });
     assert_eq!((run.starts.len(), s2_at_end(&run)), (2, Some(500)));
     assert_eq!((kept(&run), faults(&run)), (vec![Kept::Settings], vec![]));

@@ -20,12 +20,6 @@ struct Asked<P> {
     scans: u32,
 }
 
-impl<P: Plant> Asked<P> {
-    fn new(plant: P, streams: bool, floods: bool) -> Self {
-        Self { plant, streams, floods, scans: 0 }
-    }
-}
-
 impl<P: Plant> Plant for Asked<P> {
     fn within(&self) -> Option<&dyn Plant> {
         Some(&self.plant)
@@ -74,19 +68,17 @@ fn streamed(run: &Run) -> (usize, usize) {
 // Shows B7.
 #[test]
 fn decisions_are_the_same_without_telemetry_with_all_of_it_and_with_too_much() {
-    let world = || scene("pick-up-reflex");
-    let scene = |asked| run(asked, &Options::default());
-    let off = scene(Asked::new(world(), false, false));
-    let on = scene(Asked::new(world(), true, false));
-    let saturated = scene(Asked::new(world(), true, true));
+    let run = |streams, floods| {
+        run(Asked { plant: scene("pick-up-reflex"), streams, floods, scans: 0 }, &Options::default())
+    };
+    let (off, on, saturated) = (run(false, false), run(true, false), run(true, true));
     assert!(off.drives.iter().any(|drive| *drive != MotorDrive::Coast), "something is decided");
     assert!(off.drives == on.drives && off.scans == on.scans && off.slows == on.slows);
     assert!(off.drives == saturated.drives && off.scans == saturated.scans);
     for run in [&off, &on, &saturated] {
         let counters = run.counters;
         assert_eq!((counters.frames_lost, counters.overruns), (0, 0));
-        // With 500 commands a second beside all of it, 2 ticks of 11,600 end a few microseconds after their frame; what they
-        // decide is the same.
+        // With 500 commands a second, 2 ticks of 11,600 end a few microseconds late; what they decide is the same.
         let late = if run.messages_missed > 0 { 2 } else { 0 };
         assert!(counters.ticks_late <= late, "{counters:?}");
         assert_eq!(run.bad_frames, 0);

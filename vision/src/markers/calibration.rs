@@ -1,7 +1,5 @@
-//! Which blobs are markers: first all that look like one, then those that stay where they are.
-//!
-//! The paper covers the skin with a white sheet for this. Without one, what lies behind the skin gives blobs too: they are
-//! dropped if they move, if their edge is not sharp all around, or if their size is not that of the others.
+//! The markers: of all blobs that look like one, those that stay where they are, have a sharp edge all around and the size of the others.
+//! The paper covers the skin with a white sheet instead.
 
 use super::outline::{Outline, RAYS, irregularity};
 use super::window::{Blob, SIDE, Window};

@@ -1,13 +1,8 @@
-//! A marker's outline, ray by ray, to a part of a pixel.
-//!
-//! A threshold moves the middle of a blob when the background behind one of its sides changes. So the edge is looked for
-//! along rays from the middle, each against its own background, and compared with where that ray met the edge when the
-//! marker was calibrated: a ray that sees no edge, or another one, is left out.
+//! A marker's outline, ray by ray, to a part of a pixel. Each ray is compared with its own background and with its edge at calibration, since
+//! a threshold moves the middle of a blob when the background behind one of its sides changes.
 
 use crate::frame::{HEIGHT, Plane, Point, WIDTH};
-use crate::plane_fit::PlaneFit;
 
-/// Rays from the middle.
 pub const RAYS: usize = 16;
 const REACH: f32 = 2.5;
 /// Steps along a ray, px.
@@ -23,7 +18,6 @@ const CONTRAST_FULL: f32 = 40.0;
 const RAYS_MIN: usize = 8;
 /// The farthest that an edge may be from where the others put it, px.
 const STRAY: f32 = 0.6;
-
 /// A grey level of [`sample`].
 const ONE_LEVEL: i32 = 256 * 256;
 
@@ -115,27 +109,33 @@ fn residual(fit: &Fit, ray: usize, edge: Edge, radius: f32) -> f32 {
     (edge.radius - radius - fit.growth - fit.x * cos - fit.y * sin).abs()
 }
 
+/// Move and growth by weighted least squares. Growth is drawn towards 0: half an outline does not tell growth from a move.
 fn least_squares(edges: &[Edge; RAYS], radii: &[f32; RAYS], used: &[bool; RAYS]) -> Option<Fit> {
-    let mut plane = PlaneFit::default();
-    let mut rays = 0;
+    let (mut n, mut x, mut y, mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+    let (mut v, mut xv, mut yv, mut rays) = (0.0, 0.0, 0.0, 0);
     for ray in (0..RAYS).filter(|&ray| used[ray]) {
         let weight = edges[ray].contrast.min(CONTRAST_FULL) / CONTRAST_FULL;
-        plane.add(weight, DIRECTIONS[ray], edges[ray].radius - radii[ray]);
+        let ((cos, sin), off) = (DIRECTIONS[ray], edges[ray].radius - radii[ray]);
+        (n, x, y) = (n + weight, x + weight * cos, y + weight * sin);
+        (xx, xy, yy) = (xx + weight * cos * cos, xy + weight * cos * sin, yy + weight * sin * sin);
+        (v, xv, yv) = (v + weight * off, xv + weight * off * cos, yv + weight * off * sin);
         rays += 1;
     }
-    if rays < RAYS_MIN {
+    let det_min = 0.02 * (n + 1.0) * n * n;
+    let n = n + 1.0;
+    let det = n * (xx * yy - xy * xy) - x * (x * yy - xy * y) + y * (x * xy - xx * y);
+    if rays < RAYS_MIN || det < det_min {
         return None;
     }
-    // Growth is drawn towards 0: half an outline does not tell growth from a move.
-    let n = plane.weight();
-    let [growth, x, y] = plane.solve(1.0, 0.02 * (n + 1.0) * n * n)?;
-    let mut fit = Fit { x, y, growth, rays, stray: 0.0 };
-    let mut sum = 0.0;
-    for ray in (0..RAYS).filter(|&ray| used[ray]) {
+    let growth = v * (xx * yy - xy * xy) - x * (xv * yy - xy * yv) + y * (xv * xy - xx * yv);
+    let along_x = n * (xv * yy - xy * yv) - v * (x * yy - xy * y) + y * (x * yv - xv * y);
+    let along_y = n * (xx * yv - xv * xy) - x * (x * yv - xv * y) + v * (x * xy - xx * y);
+    let mut fit = Fit { x: along_x / det, y: along_y / det, growth: growth / det, rays, stray: 0.0 };
+    let squares = (0..RAYS).filter(|&ray| used[ray]).map(|ray| {
         let off = residual(&fit, ray, edges[ray], radii[ray]);
-        sum += off * off;
-    }
-    fit.stray = libm::sqrtf(sum / rays as f32);
+        off * off
+    });
+    fit.stray = libm::sqrtf(squares.sum::<f32>() / rays as f32);
     Some(fit)
 }
 

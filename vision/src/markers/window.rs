@@ -1,6 +1,4 @@
-//! Local blob detection: what is dark in a window of 30 x 30 pixels, and in how many pieces.
-//!
-//! A row of the window is a word of bits, so that growing a blob by one pixel in all directions is a few shifts.
+//! Local blob detection: what is dark in a window of 30 x 30 pixels, a word of bits a row, and in how many pieces.
 
 use crate::frame::{HEIGHT, Plane, Point, WIDTH};
 use crate::mask::eight_bits;
@@ -143,46 +141,33 @@ fn flood(dark: &[u32; SIDE], row: usize) -> [u32; SIDE] {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn picture(discs: &[(f32, f32, f32)]) -> Box<Plane> {
-        let mut grey: Box<Plane> = vec![200; crate::frame::PIXELS].into_boxed_slice().try_into().unwrap();
-        for (at, level) in grey.iter_mut().enumerate() {
-            let (x, y) = ((at % WIDTH) as f32, (at / WIDTH) as f32);
-            if discs.iter().any(|&(cx, cy, r)| libm::hypotf(x - cx, y - cy) <= r) {
-                *level = 20;
-            }
-        }
-        grey
-    }
+    use crate::frame::plane;
 
     #[test]
     fn two_discs_are_two_blobs() {
-        let grey = picture(&[(100.0, 100.0, 4.0), (109.0, 104.0, 3.0), (113.0, 90.0, 0.5)]);
+        let mut grey = plane();
+        for (at, level) in grey.iter_mut().enumerate() {
+            let (x, y) = ((at % WIDTH) as f32, (at / WIDTH) as f32);
+            let discs = [(100.0, 100.0, 4.0), (109.0, 104.0, 3.0), (113.0, 90.0, 0.5)];
+            let is_dark = discs.iter().any(|&(cx, cy, r)| libm::hypotf(x - cx, y - cy) <= r);
+            *level = if is_dark { 20 } else { 200 };
+        }
         let window = Window::around(&grey, Point { x: 103.0, y: 100.0 });
         assert_eq!(window.levels(), Levels { dark: 22, surround: 202 });
-        let blobs = window.blobs(&window.below(110), 5);
-        assert_eq!(blobs.len(), 2, "{blobs:?}");
-        assert_eq!((blobs[0].at, blobs[0].area), (Point { x: 100.0, y: 100.0 }, 49));
-        assert_eq!((blobs[1].at, blobs[1].area), (Point { x: 109.0, y: 104.0 }, 29));
-        assert!(!blobs[0].cut && !blobs[1].cut);
+        let [first, second] = window.blobs(&window.below(110), 5)[..] else { panic!("two blobs") };
+        assert_eq!(first, Blob { at: Point { x: 100.0, y: 100.0 }, area: 49, cut: false });
+        assert_eq!(second, Blob { at: Point { x: 109.0, y: 104.0 }, area: 29, cut: false });
     }
 
     #[test]
     fn a_spiral_is_one_blob_and_a_full_window_ends() {
-        let grey = picture(&[]);
-        let window = Window::around(&grey, Point { x: 0.0, y: 239.0 });
-        let mut rows = [0; SIDE];
-        for (at, row) in rows.iter_mut().enumerate() {
-            *row = match at % 4 {
-                0 | 2 => (1 << SIDE) - 1,
-                1 => 1,
-                _ => 1 << (SIDE - 1),
-            };
+        let window = Window::around(&plane(), Point { x: 0.0, y: 239.0 });
+        let full = (1 << SIDE) - 1;
+        let spiral = std::array::from_fn(|row| [full, 1, full, 1 << (SIDE - 1)][row % 4]);
+        for (rows, area) in [(spiral, 15 * 30 + 15), ([full; SIDE], 900)] {
+            let [blob] = window.blobs(&rows, 1)[..] else { panic!("one blob") };
+            assert!(blob.cut && blob.area == area, "{blob:?}");
         }
-        let [spiral] = window.blobs(&rows, 1)[..] else { panic!("one blob") };
-        assert!(spiral.cut);
-        let [full] = window.blobs(&[(1 << SIDE) - 1; SIDE], 1)[..] else { panic!("one blob") };
-        assert_eq!(full.area, 900);
         assert!(window.blobs(&[0; SIDE], 1).is_empty());
     }
 }

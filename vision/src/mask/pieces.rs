@@ -3,34 +3,18 @@
 use super::{BITS, Mask, WORDS, Word, flood};
 use crate::frame::HEIGHT;
 
-/// Pieces that [`Mask::keep_large`] tells apart.
-pub const PIECES_MAX: usize = 48;
+/// Pieces that are compared; of more, the first ones.
+const PIECES_MAX: usize = 48;
 
 impl Mask {
-    /// Keeps its connected pieces that are at least `percent` of the largest; of more than [`PIECES_MAX`] the first ones.
+    /// Keeps its connected pieces that are at least `percent` of the largest.
     pub fn keep_large(&mut self, percent: u32) {
-        let mut rest = self.clone();
-        let mut largest = 0;
-        let mut starts = [(0, 0, 0); PIECES_MAX];
-        let mut count = 0;
-        while count < PIECES_MAX {
-            let Some((start, piece)) = rest.take_piece() else { break };
-            let area = piece.count();
-            largest = largest.max(area);
-            starts[count] = (start.0, start.1, area);
-            count += 1;
-        }
-        if count < 2 {
-            return;
-        }
-        let mut rest = std::mem::take(self);
-        for &(_, _, area) in &starts[..count] {
-            // Pieces come in the same order again.
-            let Some((_, piece)) = rest.take_piece() else { break };
-            if 100 * area >= percent * largest {
-                self.unite(&piece);
-            }
-        }
+        let pieces: Vec<(Self, u32)> =
+            self.pieces().take(PIECES_MAX).map(|piece| (piece.clone(), piece.count())).collect();
+        let largest = pieces.iter().map(|(_, area)| *area).max().unwrap_or(0);
+        *self = Self::EMPTY;
+        let large = pieces.iter().filter(|(_, area)| 100 * area >= percent * largest);
+        large.for_each(|(piece, _)| self.unite(piece));
     }
 
     /// Takes out what is at most twice `half_px` wide, unless that is most of it: a thin object is no spur.
@@ -46,9 +30,8 @@ impl Mask {
 
     /// Keeps the piece that has the most pixels in `by`, and what is at most `apart_px` from it, or from what is kept.
     pub fn keep_together(&mut self, by: &Self, apart_px: usize) {
-        let (mut rest, mut kept, mut most) = (self.clone(), Self::EMPTY, 0);
-        for _ in 0..PIECES_MAX {
-            let Some((_, piece)) = rest.take_piece() else { break };
+        let (mut kept, mut most) = (Self::EMPTY, 0);
+        for piece in self.pieces().take(PIECES_MAX) {
             let mut shared = piece.clone();
             shared.intersect(by);
             if shared.count() > most {
@@ -65,13 +48,9 @@ impl Mask {
     }
 
     pub fn keep_at_border(&mut self) {
-        let mut rest = std::mem::take(self);
-        for _ in 0..PIECES_MAX {
-            let Some((_, piece)) = rest.take_piece() else { break };
-            if piece.comes_within(1) {
-                self.unite(&piece);
-            }
-        }
+        let pieces = self.pieces();
+        *self = Self::EMPTY;
+        pieces.filter(|piece| piece.comes_within(1)).for_each(|piece| self.unite(&piece));
     }
 
     pub fn comes_within(&self, px: usize) -> bool {
@@ -80,7 +59,12 @@ impl Mask {
         ends || self.rows.iter().any(|row| row[0] & left != 0 || row[WORDS - 1] & right != 0)
     }
 
-    fn take_piece(&mut self) -> Option<((usize, usize), Self)> {
+    fn pieces(&self) -> impl Iterator<Item = Self> + use<> {
+        let mut rest = self.clone();
+        std::iter::from_fn(move || rest.take_piece())
+    }
+
+    fn take_piece(&mut self) -> Option<Self> {
         let (y, word) = (0..HEIGHT)
             .find_map(|y| self.rows[y].iter().position(|&word| word != 0).map(|word| (y, word)))?;
         let mut piece = Self::EMPTY;
@@ -105,14 +89,12 @@ impl Mask {
                 (top, grown) = (top - 1, true);
             }
         }
-        for (row, taken) in self.rows.iter_mut().zip(&piece.rows) {
-            row.iter_mut().zip(taken).for_each(|(word, taken)| *word &= !taken);
-        }
-        Some(((y, word), piece))
+        self.subtract(&piece);
+        Some(piece)
     }
 
     /// Grows from a row into the next as far as `within` goes. Returns whether it did.
-    pub(super) fn grow(&mut self, from: usize, to: usize, within: &Self) -> bool {
+    fn grow(&mut self, from: usize, to: usize, within: &Self) -> bool {
         let (mut seed, mut new) = (self.rows[to], 0);
         for (word, seed) in seed.iter_mut().enumerate() {
             let reached = self.rows[from][word] & within.rows[to][word];

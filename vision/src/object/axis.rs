@@ -1,8 +1,5 @@
-//! The direction of an object's long axis from its two long rims.
-//!
-//! Second moments turn when a corner is missing that has the background's colours, or when a spot of the background is taken for
-//! the object. A straight rim does not turn: most of it is where it should be. Each rim is a row of points, the outermost
-//! pixels of slices across the axis, and the line is the one that most of them lie on.
+//! The direction of an object's long axis from its two long rims: the lines that most of the outermost pixels of slices across it lie on.
+//! Unlike second moments they do not turn when a corner is missing or a spot of the background is taken for the object.
 
 use crate::frame::{Point, WIDTH};
 use crate::mask::{Mask, Moments};
@@ -11,7 +8,6 @@ use crate::rectify::Rectifier;
 /// Below this eccentricity an object has no long rims.
 const ECCENTRICITY_MIN: f32 = 0.1;
 const SLICE_PX: f32 = 2.0;
-/// Slices, from the middle half of them to each side.
 const SLICES: usize = 256;
 /// Slices without which there is no rim.
 const SLICES_MIN: usize = 16;
@@ -30,14 +26,10 @@ const ASIDE: [f32; 2] = [-0.5, 0.5];
 const PLACES_MAX: usize = 2048;
 /// Times that the slices are cut anew, across the axis that was found.
 const ROUNDS: usize = 3;
-/// Steps of the reweighted least squares.
 const STEPS: usize = 6;
 
 /// Points of a rim along and across the axis, px.
-struct Rim {
-    along: Vec<f32>,
-    across: Vec<f32>,
-}
+struct Rim(Vec<(f32, f32)>);
 
 /// A line: its slope, how well that is known, and the share of the points that lie on it.
 #[derive(Clone, Copy)]
@@ -55,11 +47,11 @@ pub fn find(object: &Mask, moments: &Moments, lens: Option<&Rectifier>) -> Rims 
     if moments.eccentricity() < ECCENTRICITY_MIN {
         return none;
     }
-    let outline = Outline::of(object, moments.middle, lens);
-    let mut best = outline.rims(coarse);
+    let outline = outline(object, moments.middle, lens);
+    let mut best = Rims::of(&outline, coarse);
     if best.share < SHARE_CLEAR {
         for aside in ASIDE {
-            let other = outline.rims(coarse + aside);
+            let other = Rims::of(&outline, coarse + aside);
             if other.share > best.share {
                 best = other;
             }
@@ -77,10 +69,6 @@ pub fn find(object: &Mask, moments: &Moments, lens: Option<&Rectifier>) -> Rims 
     Rims { angle, ..best }
 }
 
-struct Outline {
-    places: Vec<(f32, f32)>,
-}
-
 /// The direction of both long rims, radians, and the share of the outline that lies on them.
 #[derive(Clone, Copy)]
 pub struct Rims {
@@ -89,58 +77,55 @@ pub struct Rims {
     pub share: f32,
 }
 
-impl Outline {
-    fn of(object: &Mask, middle: Point, lens: Option<&Rectifier>) -> Self {
-        let (mut inside, mut rim) = (object.clone(), object.clone());
-        inside.erode(1);
-        rim.subtract(&inside);
-        let mut outline = Self { places: Vec::new() };
-        rim.for_each(|at| {
-            let place = lens.map_or_else(|| place(at), |lens| lens.place(at));
-            if outline.places.len() < PLACES_MAX {
-                outline.places.push((place.x - middle.x, place.y - middle.y));
-            }
-        });
-        outline
-    }
+/// Outermost pixels from `middle`, px.
+fn outline(object: &Mask, middle: Point, lens: Option<&Rectifier>) -> Vec<(f32, f32)> {
+    let (mut inside, mut rim) = (object.clone(), object.clone());
+    inside.erode(1);
+    rim.subtract(&inside);
+    let mut places = Vec::new();
+    rim.for_each(|at| {
+        let flat = || Point { x: (at % WIDTH) as f32, y: (at / WIDTH) as f32 };
+        let place = lens.map_or_else(flat, |lens| lens.place(at));
+        places.push((place.x - middle.x, place.y - middle.y));
+    });
+    places.truncate(PLACES_MAX);
+    places
+}
 
-    fn rims(&self, from: f32) -> Rims {
-        let mut rims = Rims { angle: from, share: 0.0 };
+impl Rims {
+    fn of(outline: &[(f32, f32)], from: f32) -> Self {
+        let mut rims = Self { angle: from, share: 0.0 };
         for _ in 0..ROUNDS {
-            let Some((slope, share)) = self.slope(rims.angle) else { return Rims { share: 0.0, ..rims } };
-            rims = Rims { angle: rims.angle + libm::atanf(slope), share };
+            let Some((slope, share)) = slope(outline, rims.angle) else { return Self { share: 0.0, ..rims } };
+            rims = Self { angle: rims.angle + libm::atanf(slope), share };
         }
         rims
     }
-
-    /// Lean of both rims from the direction `angle`, and their share. None without rims.
-    fn slope(&self, angle: f32) -> Option<(f32, f32)> {
-        let (sin, cos) = (libm::sinf(angle), libm::cosf(angle));
-        let (mut low, mut high) = ([f32::INFINITY; SLICES], [f32::NEG_INFINITY; SLICES]);
-        for (dx, dy) in &self.places {
-            let (along, across) = (dx * cos + dy * sin, dy * cos - dx * sin);
-            let slice = along / SLICE_PX + SLICES as f32 / 2.0;
-            if (0.0..SLICES as f32).contains(&slice) {
-                let slice = slice as usize;
-                (low[slice], high[slice]) = (low[slice].min(across), high[slice].max(across));
-            }
-        }
-        let (low, high) = (Rim::of(&low)?.line(), Rim::of(&high)?.line());
-        let share = [low, high].iter().flatten().map(|line| line.share).sum::<f32>() / 2.0;
-        let slope = match (low, high) {
-            (Some(low), Some(high)) => {
-                // The straighter rim says more.
-                let (a, b) = (low.weight * low.weight, high.weight * high.weight);
-                (low.slope * a + high.slope * b) / (a + b)
-            }
-            (low, high) => low.or(high)?.slope,
-        };
-        Some((slope, share))
-    }
 }
 
-fn place(at: usize) -> Point {
-    Point { x: (at % WIDTH) as f32, y: (at / WIDTH) as f32 }
+/// Lean of both rims from the direction `angle`, and their share. None without rims.
+fn slope(outline: &[(f32, f32)], angle: f32) -> Option<(f32, f32)> {
+    let (sin, cos) = (libm::sinf(angle), libm::cosf(angle));
+    let (mut low, mut high) = ([f32::INFINITY; SLICES], [f32::NEG_INFINITY; SLICES]);
+    for (dx, dy) in outline {
+        let (along, across) = (dx * cos + dy * sin, dy * cos - dx * sin);
+        let slice = along / SLICE_PX + SLICES as f32 / 2.0;
+        if (0.0..SLICES as f32).contains(&slice) {
+            let slice = slice as usize;
+            (low[slice], high[slice]) = (low[slice].min(across), high[slice].max(across));
+        }
+    }
+    let (low, high) = (Rim::of(&low)?.line(), Rim::of(&high)?.line());
+    let share = [low, high].iter().flatten().map(|line| line.share).sum::<f32>() / 2.0;
+    let slope = match (low, high) {
+        (Some(low), Some(high)) => {
+            // The straighter rim says more.
+            let (a, b) = (low.weight * low.weight, high.weight * high.weight);
+            (low.slope * a + high.slope * b) / (a + b)
+        }
+        (low, high) => low.or(high)?.slope,
+    };
+    Some((slope, share))
 }
 
 impl Rim {
@@ -153,20 +138,18 @@ impl Rim {
         let inner = outermost.iter().enumerate().take(last.saturating_sub(end)).skip(first + end);
         let points = inner.filter(|(_, across)| is_there(across));
         let along = |slice: usize| (slice as f32 - SLICES as f32 / 2.0) * SLICE_PX;
-        let (along, across): (Vec<f32>, Vec<f32>) =
-            points.map(|(slice, &across)| (along(slice), across)).unzip();
-        (along.len() >= SLICES_MIN).then_some(Self { along, across })
+        let points: Vec<_> = points.map(|(slice, &across)| (along(slice), across)).collect();
+        (points.len() >= SLICES_MIN).then_some(Self(points))
     }
 
     /// The line that most of the points lie on, None if they lie on none.
     fn line(&self) -> Option<Line> {
-        let points = || self.along.iter().zip(&self.across);
         let (mut slope, mut offset) = self.coarse();
         let (mut weight, mut near) = (0.0, 0);
         for _ in 0..STEPS {
             let (mut w, mut wx, mut wy, mut wxx, mut wxy) = (0.0, 0.0, 0.0, 0.0, 0.0);
             near = 0;
-            for (&x, &y) in points() {
+            for &(x, y) in &self.0 {
                 let off = (y - offset - slope * x) / NEAR_PX;
                 if off.abs() < 1.0 {
                     // Tukey's weight: full on the line, none far from it.
@@ -184,29 +167,25 @@ impl Rim {
             offset = (wy - slope * wx) / w;
             weight = det / w;
         }
-        let share = near as f32 / self.along.len() as f32;
+        let share = near as f32 / self.0.len() as f32;
         (share >= SHARE_MIN).then_some(Line { slope, weight, share })
     }
 
     fn coarse(&self) -> (f32, f32) {
-        let (mut best, count) = ((0, 0.0, 0.0), self.along.len());
+        let (mut best, count) = ((0, 0.0, 0.0), self.0.len());
         for reach in [count / 3, count / 2, 2 * count / 3] {
             for a in (0..count - reach).step_by(2) {
-                let b = a + reach;
-                let slope = (self.across[b] - self.across[a]) / (self.along[b] - self.along[a]);
-                let offset = self.across[a] - slope * self.along[a];
-                let near = self.near(slope, offset);
+                let (a, b) = (self.0[a], self.0[a + reach]);
+                let slope = (b.1 - a.1) / (b.0 - a.0);
+                let offset = a.1 - slope * a.0;
+                let is_near = |point: &&(f32, f32)| (point.1 - offset - slope * point.0).abs() < NEAR_PX;
+                let near = self.0.iter().filter(is_near).count();
                 if near > best.0 {
                     best = (near, slope, offset);
                 }
             }
         }
         (best.1, best.2)
-    }
-
-    fn near(&self, slope: f32, offset: f32) -> u32 {
-        let points = self.along.iter().zip(&self.across);
-        points.map(|(along, across)| u32::from((across - offset - slope * along).abs() < NEAR_PX)).sum()
     }
 }
 

@@ -1,8 +1,5 @@
-//! Where an object was, the scene may have changed meanwhile: what is seen there is not what is remembered, and it is no object.
-//!
-//! An object has a rim in the picture, and what is remembered goes on behind it. Where a ghost ends the picture goes on, and what is
-//! remembered may end, old inside and new outside. Colours are compared, not grey levels: a pink object may be as bright as the wall
-//! behind it.
+//! A ghost: a place that an object has left and where the scene has changed meanwhile. Unlike an object it has no rim in the picture, where
+//! the remembered scene may have one. Colours are compared: an object may be as bright as the wall behind it.
 
 use super::scene::Scene;
 use crate::frame::{Frame, HEIGHT, WIDTH};
@@ -25,11 +22,11 @@ pub fn is_one(object: &Mask, skin: &Mask, frame: &Frame, scene: &Scene) -> bool 
     rim.for_each(|at| {
         let (x, y) = (at % WIDTH, at / WIDTH);
         if (REACH..WIDTH - REACH).contains(&x) && (REACH..HEIGHT - REACH).contains(&y) {
-            let across = |colour: &dyn Fn(usize) -> (u8, u8, u8)| {
+            let across = |colour: &dyn Fn(usize) -> [u8; 3]| {
                 let apart = |reach: usize| far(colour(at - reach), colour(at + reach));
                 apart(REACH).max(apart(REACH * WIDTH))
             };
-            seen += across(&|at| (frame.red[at], frame.green[at], frame.blue[at]));
+            seen += across(&|at| frame.colour(at));
             remembered += across(&|at| scene.colour(at));
             count += 1;
         }
@@ -37,6 +34,6 @@ pub fn is_one(object: &Mask, skin: &Mask, frame: &Frame, scene: &Scene) -> bool 
     count >= RIM_MIN_PX && seen < CONTRAST_MIN * count && seen < STANDS_OUT * remembered
 }
 
-fn far(a: (u8, u8, u8), b: (u8, u8, u8)) -> u32 {
-    u32::from(a.0.abs_diff(b.0).max(a.1.abs_diff(b.1)).max(a.2.abs_diff(b.2)))
+fn far(a: [u8; 3], b: [u8; 3]) -> u32 {
+    (0..3).map(|n| u32::from(a[n].abs_diff(b[n]))).fold(0, u32::max)
 }

@@ -1,7 +1,5 @@
-//! Leaves the hand that brings an object out of it: middle and angle are to be the object's.
-//!
-//! Skin is redder than the scene's mean colour, and not as red as paint. An object of wood or cardboard is too, so a hand
-//! is left out only where most of what is seen is something else.
+//! Leaves out the hand that brings an object. Skin is redder than the scene's mean colour, and not as red as paint; so are wood and
+//! cardboard, so a hand is left out only where most of what is seen is something else.
 
 use crate::frame::Frame;
 use crate::mask::Mask;

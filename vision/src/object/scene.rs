@@ -1,55 +1,48 @@
-//! The scene behind the skin, remembered while an object hides it.
-//!
-//! For each pixel: its colour and how much that varies. It follows slowly where nothing is held in front of it and stands
-//! still where the object is, so that an object that is held still does not become background.
+//! The scene behind the skin, and what moves in it. The scene follows slowly and stands still where an object is, so that an object that is
+//! held still does not become background.
 
-use crate::frame::{Frame, PIXELS, Plane, WIDTH};
+use crate::frame::{Frame, PIXELS, Plane, WIDTH, plane};
 use crate::mask::Mask;
 
 /// Fraction bits of a remembered level.
 const FRACTION: u32 = 7;
 /// A pixel differs from the scene if a colour is this far off, grey levels, and four times its usual variation.
 const APART_MIN: i16 = 12;
-
-/// Every so many pixels tell how the light is.
+/// One of so many pixels stands for all.
 const SAMPLE: usize = 61;
-/// Pixels that must tell so.
 const SAMPLES_MIN: u16 = 100;
-/// Levels that tell.
 const LIGHT: (i32, i32) = (30, 235);
 /// A change of the light below this is none, 1/256.
 const LIGHT_MIN: i32 = 2;
+/// Grey levels from its mean beyond which a pixel moves: twice the noise of a cheap camera.
+const MOVES: i16 = 14;
+/// The running mean follows by this power of two: it forgets a move after some four frames.
+const RUNNING_RATE: u32 = 2;
 
 type Levels = Box<[i16; PIXELS]>;
 
 #[derive(Clone, Debug)]
 pub struct Scene {
-    red: Levels,
-    green: Levels,
-    blue: Levels,
+    /// Red, green, blue.
+    colours: [Levels; 3],
+    /// Variation of green.
     varies: Levels,
     frames: u32,
 }
 
-pub(super) fn levels() -> Levels {
-    match vec![0; PIXELS].into_boxed_slice().try_into() {
-        Ok(plane) => plane,
-        Err(_) => unreachable!("its length is that of a plane"),
+impl Default for Scene {
+    fn default() -> Self {
+        Self { colours: [plane(), plane(), plane()], varies: plane(), frames: 0 }
     }
 }
 
 impl Scene {
-    pub fn new() -> Self {
-        Self { red: levels(), green: levels(), blue: levels(), varies: levels(), frames: 0 }
-    }
-
     pub fn differs(&self, frame: &Frame, into: &mut [u8; PIXELS]) {
-        let (red, green, blue) = (frame.red, frame.green, frame.blue);
-        let (old_red, old_green, old_blue, varies) = (&*self.red, &*self.green, &*self.blue, &*self.varies);
+        let (new, varies) = ([frame.red, frame.green, frame.blue], &*self.varies);
+        let [red, green, blue] = self.colours.each_ref().map(|levels| &**levels);
         for at in 0..PIXELS {
-            let off = apart(red[at], old_red[at])
-                .max(apart(green[at], old_green[at]))
-                .max(apart(blue[at], old_blue[at]));
+            let off =
+                apart(new[0][at], red[at]).max(apart(new[1][at], green[at])).max(apart(new[2][at], blue[at]));
             // A colour is never farther off than 255, so four times the variation is below 2^15.
             into[at] = u8::from(off >> 2 > (varies[at]).max((APART_MIN << FRACTION) >> 2));
         }
@@ -61,8 +54,8 @@ impl Scene {
         // Ratios in steps of 1/256, from 0.5 to 1.5.
         let (mut counts, mut count) = ([0u16; 256], 0);
         for at in (0..PIXELS).step_by(SAMPLE) {
-            let was =
-                (i32::from(self.red[at]) + 2 * i32::from(self.green[at]) + i32::from(self.blue[at])) >> 2;
+            let [red, green, blue] = self.colours.each_ref().map(|levels| i32::from(levels[at]));
+            let was = (red + 2 * green + blue) >> 2;
             let is = i32::from(grey_is[at]) << FRACTION;
             // The dark says little, and the bright is cut off.
             if (LIGHT.0..LIGHT.1).contains(&(was >> FRACTION)) && !hidden.contains(at % WIDTH, at / WIDTH) {
@@ -84,26 +77,27 @@ impl Scene {
         if change.abs() < LIGHT_MIN {
             return;
         }
-        for levels in [&mut self.red, &mut self.green, &mut self.blue] {
-            for level in levels.iter_mut() {
-                // The upper half of a product of 16 bits each, which is one instruction for eight levels.
-                let more = ((i32::from(*level) * (change << 8)) >> 16) as i16;
-                *level = level.saturating_add(more).min(255 << FRACTION);
-            }
+        for level in self.colours.iter_mut().flat_map(|levels| levels.iter_mut()) {
+            // The upper half of a product of 16 bits each, which is one instruction for eight levels.
+            let more = ((i32::from(*level) * (change << 8)) >> 16) as i16;
+            *level = level.saturating_add(more).min(255 << FRACTION);
         }
     }
 
-    /// Follows the frame where `held` is 0; `rate` is the power of two by which it does, the higher the slower.
-    pub fn follow(&mut self, frame: &Frame, held: &[u8; PIXELS], rate: u32) {
+    /// Follows the frame where it is not `hidden`; `rate` is the power of two by which it does, the higher the slower.
+    pub fn follow(&mut self, frame: &Frame, hidden: &Mask, rate: u32) {
+        let mut held = plane();
+        hidden.unpack(&mut held);
         // The first frames count alike.
         self.frames = (self.frames + 1).min(1 << 16);
         let rate = rate.min(self.frames.ilog2());
-        for (plane, levels) in
-            [(frame.red, &mut self.red), (frame.green, &mut self.green), (frame.blue, &mut self.blue)]
-        {
-            follow(plane, levels, held, rate);
+        for (plane, levels) in [frame.red, frame.green, frame.blue].into_iter().zip(&mut self.colours) {
+            for at in 0..PIXELS {
+                let free = i16::from(held[at]) - 1;
+                levels[at] += (((i16::from(plane[at]) << FRACTION) - levels[at]) >> rate) & free;
+            }
         }
-        let (green, old, varies) = (frame.green, &*self.green, &mut *self.varies);
+        let (green, old, varies) = (frame.green, &*self.colours[1], &mut *self.varies);
         for at in 0..PIXELS {
             let free = i16::from(held[at]) - 1;
             let off = apart(green[at], old[at]);
@@ -112,17 +106,15 @@ impl Scene {
     }
 
     pub fn mean_colour(&self) -> [u8; 3] {
-        // Every 61st pixel stands for all.
-        [&self.red, &self.green, &self.blue].map(|plane| {
-            let sum: u32 = plane.iter().step_by(61).map(|&level| level as u32).sum();
-            ((sum / PIXELS.div_ceil(61) as u32) >> FRACTION) as u8
+        self.colours.each_ref().map(|plane| {
+            let sum: u32 = plane.iter().step_by(SAMPLE).map(|&level| level as u32).sum();
+            ((sum / PIXELS.div_ceil(SAMPLE) as u32) >> FRACTION) as u8
         })
     }
 
     #[inline]
-    pub fn colour(&self, at: usize) -> (u8, u8, u8) {
-        let level = |plane: &Levels| (plane[at] >> FRACTION) as u8;
-        (level(&self.red), level(&self.green), level(&self.blue))
+    pub fn colour(&self, at: usize) -> [u8; 3] {
+        self.colours.each_ref().map(|plane| (plane[at] >> FRACTION) as u8)
     }
 }
 
@@ -131,9 +123,50 @@ fn apart(level: u8, old: i16) -> i16 {
     (((i16::from(level)) << FRACTION) - old).abs()
 }
 
-fn follow(plane: &Plane, levels: &mut [i16; PIXELS], held: &[u8; PIXELS], rate: u32) {
-    for at in 0..PIXELS {
-        let free = i16::from(held[at]) - 1;
-        levels[at] += ((((i16::from(plane[at])) << FRACTION) - levels[at]) >> rate) & free;
+/// A running mean of the grey level.
+#[derive(Clone, Debug)]
+pub struct Running {
+    mean: Levels,
+    started: bool,
+}
+
+impl Default for Running {
+    fn default() -> Self {
+        Self { mean: plane(), started: false }
+    }
+}
+
+impl Running {
+    /// Marks with 1 what moves.
+    pub fn step(&mut self, grey: &Plane, into: &mut Plane) {
+        let (rate, limit) = (if self.started { RUNNING_RATE } else { 0 }, MOVES << FRACTION);
+        let mean = &mut *self.mean;
+        for at in 0..PIXELS {
+            let off = (i16::from(grey[at]) << FRACTION) - mean[at];
+            into[at] = u8::from(off.abs() > limit);
+            mean[at] += off >> rate;
+        }
+        if !self.started {
+            (self.started, _) = (true, into.fill(0));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_changes_moves_until_the_mean_has_followed() {
+        let (mut running, mut grey, mut into) = (Running::default(), plane(), plane());
+        grey.fill(100);
+        let mut marked = [0; 2];
+        for number in 0..60 {
+            grey[5] = if number < 10 { 100 } else { 140 };
+            running.step(&grey, &mut into);
+            assert!(number > 0 || into.iter().all(|&moves| moves == 0), "nothing moves in the first frame");
+            marked = [marked[0] + usize::from(into[5]), marked[1] + usize::from(into[7])];
+        }
+        assert!((3..6).contains(&marked[0]) && marked[1] == 0, "{marked:?}");
     }
 }

@@ -150,20 +150,9 @@ impl Fingertip {
 
     /// The finger, with the session's array in its scenes.
     fn with_array(&self) -> Finger {
-        let own = &self.session;
-        let array = [
-            ("array.mv_per_n", own.mv_per_n),
-            ("array.spread", own.spread),
-            ("array.noise_mv", own.noise_mv),
-            ("array.uneven", own.uneven),
-            ("array.renews_um", own.renews_um),
-            ("array.slip_part", own.slip_part),
-            ("array.rim_part", own.rim_part),
-            ("array.knock_mn_per_mv", own.knock_mn_per_mv),
-            ("array.motor_part", own.motor_part),
-            ("array.tilt", own.tilt),
-        ];
-        array.into_iter().fold(self.finger.clone(), Finger::with)
+        let is_array = |(place, _): &(&str, f64)| place.starts_with("array.") && *place != "array.place_mm";
+        let array = self.session.numbers().filter(is_array);
+        array.fold(self.finger.clone(), Finger::with)
     }
 
     /// Plays a scene into `heard`. Fails if its network cannot be restored.

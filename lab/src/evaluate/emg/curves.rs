@@ -10,16 +10,14 @@ use tenax_logic::emg::fitted::FITTED;
 use tenax_logic::emg::level::level_of;
 
 use super::Recordings;
-use super::recordings::Recording;
 use super::score::{Count, Said, Score};
 use super::trial::{Kind, Trial, Trials};
 
-/// Parts of the calibrated rise that plain control asks for.
+/// Parts of the calibrated rise that plain control asks for, and rows for which it waits.
 const PLAIN: [f64; 9] = [0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0];
-/// And by how much more or less than it ships the hand does.
-const HAND: [f64; 9] = [0.5, 0.65, 0.8, 0.9, 1.0, 1.1, 1.25, 1.4, 1.6];
-/// Rows for which plain control waits.
 const PLAIN_DWELL: usize = 3;
+/// Demands of the hand, times those that ship.
+const HAND: [f64; 9] = [0.5, 0.65, 0.8, 0.9, 1.0, 1.1, 1.25, 1.4, 1.6];
 
 #[derive(Clone, Debug)]
 pub struct Point {
@@ -31,48 +29,45 @@ pub struct Point {
     pub score: Score,
 }
 
-/// Plain control's calibration: levels of both sites, Q10 octaves.
-struct Plain {
-    begins: [f64; 2],
-    /// The ratio between closing and opening.
-    middle: f64,
+impl Point {
+    /// Mean of the windows right of closing and opening.
+    pub fn right(&self) -> f64 {
+        f64::midpoint(self.score.close_right, self.score.open_right)
+    }
+
+    pub fn ships(&self) -> bool {
+        self.control == "hand" && self.asks == 1.0
+    }
 }
 
-impl Plain {
-    /// Calibrated from what the hand was calibrated from. A rise is at least half an octave above nearly all of rest.
-    fn of(trial: &Trial, part: f64) -> Self {
-        let model = &trial.model;
-        let (closes, opens) = (model.closing_site(), model.opening_site());
-        let (rest, close, open) = (model.rest(), model.close(), model.open());
-        let begins = |site: usize, most: i32| {
-            let own = f64::from(rest[site]);
-            (own + part * (f64::from(most) - own)).max(own + 2.3 * f64::from(model.spread()[site]) + 512.0)
+/// Plain control, calibrated from what the hand was calibrated from. A rise is at least half an octave above nearly all of rest.
+fn plain(trial: &Trial, part: f64) -> Vec<Said> {
+    let model = &trial.model;
+    let (closes, opens) = (model.closing_site(), model.opening_site());
+    let (rest, close, open) = (model.rest(), model.close(), model.open());
+    let begins = |site: usize, most: i32| {
+        let own = f64::from(rest[site]);
+        (own + part * (f64::from(most) - own)).max(own + 2.3 * f64::from(model.spread()[site]) + 512.0)
+    };
+    let begins = [begins(closes, close[closes]), begins(opens, open[opens])];
+    let ratio = |point: [i32; 2]| f64::from(point[opens] - point[closes]);
+    let middle = (ratio(close) + ratio(open)) / 2.0;
+    let (mut last, mut stands, mut wish) = (Wish::Rest, 0, Wish::Rest);
+    let said = |uv: [f64; 2]| {
+        let [close, open] = uv.map(|uv| f64::from(level_of(uv as i32)));
+        let wanted = match open - close > middle {
+            true if open > begins[1] => Wish::Open,
+            false if close > begins[0] => Wish::Close,
+            _ => Wish::Rest,
         };
-        let ratio = |point: [i32; 2]| f64::from(point[opens] - point[closes]);
-        Self {
-            begins: [begins(closes, close[closes]), begins(opens, open[opens])],
-            middle: (ratio(close) + ratio(open)) / 2.0,
+        stands = if wanted == last { stands + 1 } else { 1 };
+        last = wanted;
+        if stands >= PLAIN_DWELL {
+            wish = wanted;
         }
-    }
-
-    fn says(&self, recording: &Recording, sites: [usize; 2]) -> Vec<Said> {
-        let (mut last, mut stands, mut wish) = (Wish::Rest, 0, Wish::Rest);
-        let said = |uv: [f64; 2]| {
-            let [close, open] = uv.map(|uv| f64::from(level_of(uv as i32)));
-            let wanted = match open - close > self.middle {
-                true if open > self.begins[1] => Wish::Open,
-                false if close > self.begins[0] => Wish::Close,
-                _ => Wish::Rest,
-            };
-            stands = if wanted == last { stands + 1 } else { 1 };
-            last = wanted;
-            if stands >= PLAIN_DWELL {
-                wish = wanted;
-            }
-            Said { wish, ..Said::default() }
-        };
-        recording.site_uv(sites).map(said).collect()
-    }
+        Said { wish, ..Said::default() }
+    };
+    trial.recording.site_uv([closes, opens].map(|n| trial.sites[n])).map(said).collect()
 }
 
 /// The shipped constants, asking for so much more or less of a contraction.
@@ -95,43 +90,20 @@ fn asking(times: f64) -> &'static Fitted {
 pub fn curves(folder: &Path) -> anyhow::Result<Vec<Point>> {
     let Recordings { people, .. } = Recordings::read(folder)?;
     let trials: Vec<Trial> = people.values().flat_map(|days| Trials::of(days).all).collect();
-    let heard: Vec<_> = trials.par_iter().map(Trial::hear).collect();
-    let kinds = [(Kind::SameSession, "same session"), (Kind::OtherPosture, "other posture")];
+    let trials: Vec<_> = trials.into_par_iter().map(|trial| (trial.hear(), trial)).collect();
     let mut points = Vec::new();
-    for (kind, calibration) in kinds {
-        let own = || trials.iter().zip(&heard).filter(move |(trial, _)| trial.kind == kind);
+    for (kind, calibration) in [(Kind::SameSession, "same session"), (Kind::OtherPosture, "other posture")] {
         let mut add = |control, asks, play: &dyn Fn(&Trial, &[_]) -> Vec<Said>| {
-            let counts: Vec<Count> = own().map(|(trial, heard)| trial.counted(&play(trial, heard))).collect();
-            points.extend(Count::sum(&counts).score().map(|score| Point {
-                control,
-                calibration,
-                asks,
-                score,
-            }));
+            let own = trials.iter().filter(|(_, trial)| trial.kind == kind);
+            let counts: Vec<Count> = own.map(|(heard, trial)| trial.counted(&play(trial, heard))).collect();
+            let score = Count::sum(&counts).score();
+            points.extend(score.map(|score| Point { control, calibration, asks, score }));
         };
-        for part in PLAIN {
-            // The sites of the wearer, flexor or extensor, as the calibration found them.
-            add("plain", part, &|trial, _| {
-                let sites = [trial.model.closing_site(), trial.model.opening_site()].map(|n| trial.sites[n]);
-                Plain::of(trial, part).says(trial.recording, sites)
-            });
-        }
+        PLAIN.iter().for_each(|&part| add("plain", part, &|trial, _| plain(trial, part)));
         for times in HAND {
             let fitted = asking(times);
             add("hand", times, &|trial, heard| trial.decide(fitted, heard));
         }
     }
     Ok(points)
-}
-
-impl Point {
-    /// Mean of the windows right of closing and opening.
-    pub fn right(&self) -> f64 {
-        f64::midpoint(self.score.close_right, self.score.open_right)
-    }
-
-    /// Whether the hand ships so.
-    pub fn ships(&self) -> bool {
-        self.control == "hand" && self.asks == 1.0
-    }
 }

@@ -1,14 +1,11 @@
 //! Faults of the electrodes drawn over recorded people who hold something and rest: by how much each opens the hand, and whether it is
-//! reported.
-//!
-//! A case plays a recording up to a moment of rest, goes on with that rest over and over, and from then on one electrode or both give
-//! what a fault gives. The hand is calibrated as in the trial that was drawn, or not at all. A rest that moves the hand by itself is
-//! drawn again: that is a false motion, which is counted elsewhere.
+//! reported. A rest that moves the hand by itself is drawn again: that is a false motion, which is counted elsewhere.
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::ops::Range;
 
+use clap::ValueEnum;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
@@ -40,7 +37,7 @@ const FRONT_END_S: f64 = 0.027;
 const RANGE_MV: [f64; 2] = [-200.0, 2_950.0];
 
 /// Signal of an electrode instead of its muscle's.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, ValueEnum)]
 #[serde(rename_all = "kebab-case")]
 pub enum Fault {
     /// Off the skin: mains, rectified and smoothed.
@@ -59,28 +56,11 @@ pub enum Fault {
     Broken,
 }
 
-const FAULTS: [Fault; 7] = [
-    Fault::Lifted,
-    Fault::Loose,
-    Fault::Creeping,
-    Fault::Humming,
-    Fault::Swinging,
-    Fault::Saturated,
-    Fault::Broken,
-];
-
-/// Which electrodes it has.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Where {
-    Closing,
-    Opening,
-    Both,
-}
-
 #[derive(Clone, Copy, Debug)]
 struct Drawn {
     fault: Fault,
-    place: Where,
+    /// Whether the closing and the opening electrode have it.
+    has: [bool; 2],
     /// mV above the live zero, or mV a second.
     mv: [f64; 2],
     ripple: f64,
@@ -93,8 +73,8 @@ struct Drawn {
 
 impl Drawn {
     fn of(rng: &mut ChaCha8Rng) -> Self {
-        let fault = FAULTS[rng.random_range(0..FAULTS.len())];
-        let place = [Where::Closing, Where::Opening, Where::Opening, Where::Both][rng.random_range(0..4)];
+        let fault = Fault::value_variants()[rng.random_range(0..Fault::value_variants().len())];
+        let has = [[true, false], [false, true], [false, true], [true; 2]][rng.random_range(0..4)];
         let level =
             |rng: &mut ChaCha8Rng, low: f64, high: f64| low * (high / low).powf(rng.random_range(0.0..1.0));
         let mv = match fault {
@@ -106,11 +86,11 @@ impl Drawn {
             Fault::Broken => level(rng, 1.0, 3_301.0) - 301.0,
         };
         let lasts_s = level(rng, LASTS_S[0], LASTS_S[1]);
-        let other = if place == Where::Both { rng.random_range(0.05..1.0) } else { 1.0 };
+        let other = if has == [true; 2] { rng.random_range(0.05..1.0) } else { 1.0 };
         let mv = if rng.random_bool(0.5) { [mv, mv * other] } else { [mv * other, mv] };
         Self {
             fault,
-            place,
+            has,
             mv,
             ripple: rng.random_range(0.0..0.3),
             hz: rng.random_range(0.8..2.2),
@@ -120,17 +100,9 @@ impl Drawn {
         }
     }
 
-    fn has(&self, site: usize) -> bool {
-        match self.place {
-            Where::Closing => site == 0,
-            Where::Opening => site == 1,
-            Where::Both => true,
-        }
-    }
-
     /// Signal of a site's electrode `t_s` after the fault began, mV.
     fn read(&mut self, site: usize, muscle_mv: f64, t_s: f64, rng: &mut ChaCha8Rng) -> f64 {
-        if !self.has(site) {
+        if !self.has[site] {
             return muscle_mv;
         }
         if t_s >= self.loose.1 {
@@ -235,7 +207,7 @@ fn case(fitted: &'static Fitted, trial: &Trial, wearer: usize, rng: &mut ChaCha8
         }
         hand.take(pair);
         for (site, electrode) in electrodes.into_iter().enumerate().filter(|_| is_on) {
-            if drawn.has(site) && (pair[electrode].is_none() || hand.emg.is_raised(electrode)) {
+            if drawn.has[site] && (pair[electrode].is_none() || hand.emg.is_raised(electrode)) {
                 active[site] += 1;
                 lasting |= active[site] >= reported_within;
                 reported |= active[site] <= reported_within && hand.emg.quality(electrode) != Quality::Good;
@@ -244,7 +216,7 @@ fn case(fitted: &'static Fitted, trial: &Trial, wearer: usize, rng: &mut ChaCha8
     }
     (alone.opened_mm == 0.0).then_some(Outcome {
         fault: drawn.fault,
-        both: drawn.place == Where::Both,
+        both: drawn.has == [true; 2],
         wearer,
         opened_mm: hand.opened_mm,
         lasting,
@@ -252,7 +224,6 @@ fn case(fitted: &'static Fitted, trial: &Trial, wearer: usize, rng: &mut ChaCha8
     })
 }
 
-/// Cases of a kind, and what came of them.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Row {
     pub cases: usize,
@@ -315,7 +286,7 @@ pub(in crate::evaluate) fn draw(fitted: &'static Fitted, trials: &[&Trial], case
         all: Row::of(outcomes.iter()),
         one: Row::of(one()),
         both: Row::of(outcomes.iter().filter(|own| own.both)),
-        faults: FAULTS.into_iter().map(|fault| (fault, of_fault(fault))).collect(),
+        faults: Fault::value_variants().iter().map(|&fault| (fault, of_fault(fault))).collect(),
         wearers: WEARERS.into_iter().enumerate().map(|(n, name)| (name, of_wearer(n))).collect(),
     }
 }

@@ -52,33 +52,3 @@ impl Interval {
         Some(Self { low: low?, high: high? })
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::super::recordings::tests::{made_up, swapped};
-    use super::super::trial::Trials;
-    use super::*;
-    use crate::evaluate::emg::recordings::Days;
-    use std::collections::BTreeMap;
-    use tenax_logic::emg::fitted::FITTED;
-
-    #[test]
-    fn people_who_are_alike_leave_no_doubt_and_one_who_is_not_does() {
-        let days = Days::from([(1, BTreeMap::from([(1, made_up())]))]);
-        let trials = Trials::of(&days);
-        let said = trials.all[0].play(&FITTED);
-        let count = |recording| {
-            let mut count = Count::default();
-            count.add(recording, &said, 2);
-            Sessions(vec![(Kind::SameSession, count)])
-        };
-        let (good, bad) = (count(&made_up()), count(&swapped(made_up())));
-        let right = |people: &[Sessions]| {
-            Interval::of(people, Kind::SameSession).map(|own| [own.low.open_right, own.high.open_right])
-        };
-        let [low, high] = right(&[good.clone(), good.clone(), good.clone()]).expect("they have sessions");
-        assert!(low == high && low > 0.95, "{low} to {high}");
-        assert_eq!(right(&[good.clone(), bad, good]), Some([0.0, high]));
-        assert!(Interval::of(&[], Kind::SameSession).is_none());
-    }
-}

@@ -1,5 +1,4 @@
-//! Recorded envelopes of people, as the board reads them.
-//!
+//! Recorded envelopes of people, as the board reads them:
 //! `personP_dayD_postureQ.csv` at 100 Hz: `t_s`, four electrodes (`ecu`, `edc`, `fcr`, `fcu`, 32767 is 2.8 V), `label`: 1 rest, 3 close,
 //! 4 open, others nothing.
 
@@ -8,12 +7,11 @@ use std::ops::Range;
 use std::path::Path;
 
 use anyhow::Context;
+use tenax_frames::quantile::between_ranks;
 use tenax_hal_shim::words::CalibrationRefusal;
 use tenax_logic::emg::calibration::{Calibration, PROMPT_FRAMES, Progress};
 use tenax_logic::emg::level::level_of;
 use tenax_logic::emg::model::EmgModel;
-
-use tenax_frames::quantile::between_ranks;
 
 /// Rows a second of a recording.
 pub(super) const HZ: f64 = 100.0;
@@ -60,10 +58,8 @@ impl Recording {
             let found = header.iter().position(|column| column.trim() == name);
             found.with_context(|| format!("line 1: no column `{name}`"))
         };
-        let mut places = [0; 4];
-        for (own, name) in places.iter_mut().zip(ELECTRODES) {
-            *own = place(name)?;
-        }
+        let [ecu, edc, fcr, fcu] = ELECTRODES.map(place);
+        let places = [ecu?, edc?, fcr?, fcu?];
         let label = place("label")?;
         let (mut uv, mut labels) = (Vec::new(), Vec::new());
         for row in reader.records() {
@@ -74,11 +70,8 @@ impl Recording {
                 let number = field.parse().ok().filter(|number: &f64| number.is_finite());
                 number.with_context(|| format!("line {line}: `{field}` is no number"))
             };
-            let mut pins = [0.0; 4];
-            for (pin, &place) in pins.iter_mut().zip(&places) {
-                *pin = number(place)? * UV;
-            }
-            uv.push(pins);
+            let [ecu, edc, fcr, fcu] = places.map(|place| number(place).map(|count| count * UV));
+            uv.push([ecu?, edc?, fcr?, fcu?]);
             labels.push(number(label)? as u8);
         }
         Ok(Self { uv, labels })
@@ -158,24 +151,20 @@ impl Recording {
 
     /// Calibrates as the hand does: each prompt is answered with what is given, over and over for its 5 s.
     pub(super) fn calibrate(&self, sites: [usize; 2]) -> Result<EmgModel, CalibrationRefusal> {
-        let unrest = |rows: &Range<usize>| {
+        let unrest = |rows: &Range<usize>| -> f64 {
             let pairs = self.pairs(rows.clone(), sites);
-            let mean = |n: usize| {
-                pairs.iter().map(|(_, uv)| f64::from(level_of(uv[n]))).sum::<f64>() / pairs.len() as f64
+            let of_site = |n: usize| {
+                let levels = || pairs.iter().map(|(_, uv)| f64::from(level_of(uv[n])));
+                let mean = levels().sum::<f64>() / pairs.len() as f64;
+                let variance = levels().map(|level| (level - mean).powi(2)).sum::<f64>() / pairs.len() as f64;
+                mean + variance.sqrt()
             };
-            let deviation = |n: usize| {
-                let mean = mean(n);
-                pairs.iter().map(|(_, uv)| (f64::from(level_of(uv[n])) - mean).powi(2)).sum::<f64>()
-                    / pairs.len() as f64
-            };
-            mean(0) + mean(1) + deviation(0).sqrt() + deviation(1).sqrt()
+            of_site(0) + of_site(1)
         };
         let rests = self.rests();
         let rests = rests.iter().filter(|rows| rows.len() >= 50).take(4);
         let quietest = rests.min_by(|a, b| unrest(a).total_cmp(&unrest(b))).cloned();
-        let held = |label: u8| -> Vec<Range<usize>> {
-            self.contractions(label).into_iter().take(2).map(|rows| rows.start + 50..rows.end - 20).collect()
-        };
+        let held = |label: u8| -> Vec<Range<usize>> { self.shown(label).collect() };
         let mut calibration = Calibration::begin(0);
         for (phase, rows) in (0..).zip([quietest.into_iter().collect(), held(CLOSE), held(OPEN)]) {
             let shown: Vec<_> = rows.into_iter().flat_map(|rows| self.pairs(rows, sites)).collect();
@@ -190,16 +179,18 @@ impl Recording {
         }
     }
 
+    /// The middles of a label's first two contractions, which a calibration sees.
+    fn shown(&self, label: u8) -> impl Iterator<Item = Range<usize>> {
+        self.contractions(label).into_iter().take(2).map(|rows| rows.start + 50..rows.end - 20)
+    }
+
     /// By how much the ratio of two electrodes differs between the contractions that a calibration would see.
     fn turn(&self, [flexor, extensor]: [usize; 2]) -> f64 {
         let ratio = |label: u8| {
-            let rows =
-                self.contractions(label).into_iter().take(2).flat_map(|rows| rows.start + 50..rows.end - 20);
-            let levels: Vec<f64> = rows
-                .map(|row| {
-                    f64::from(level_of(self.uv[row][extensor] as i32) - level_of(self.uv[row][flexor] as i32))
-                })
-                .collect();
+            let levels = self.shown(label).flatten().map(|row| {
+                let [flexor, extensor] = [flexor, extensor].map(|n| level_of(self.uv[row][n] as i32));
+                f64::from(extensor - flexor)
+            });
             between_ranks(levels, 0.5).unwrap_or_default()
         };
         (ratio(OPEN) - ratio(CLOSE)).abs()

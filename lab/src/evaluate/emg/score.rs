@@ -14,7 +14,6 @@ pub(in crate::evaluate) struct Said {
     pub doubted: bool,
 }
 
-/// Counts of one or more recordings.
 #[derive(Clone, Debug, Default)]
 pub(in crate::evaluate) struct Count {
     rest_h: f64,
@@ -68,7 +67,6 @@ impl Count {
         }
     }
 
-    /// Several together.
     pub fn sum<'a>(all: impl IntoIterator<Item = &'a Self>) -> Self {
         let mut sum = Self::default();
         for own in all {

@@ -11,7 +11,6 @@ use tenax_logic::emg::{Emg, Verdict};
 use super::recordings::{Days, Recording};
 use super::score::{Count, Said};
 
-/// Which calibration a recording is played with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::evaluate) enum Kind {
     SameSession,

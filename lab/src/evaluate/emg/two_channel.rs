@@ -1,6 +1,5 @@
-//! Short recordings of two muscles, one movement each: `emg_two_channel_[LETTER_]MOVEMENT[N].csv`, raw, through the front end of their
-//! recipe, which also says what a movement means. A session is calibrated from each choice of one rest, one held movement that closes
-//! and one that opens, and scored on the others.
+//! Short recordings of two muscles, one movement each, `emg_two_channel_[LETTER_]MOVEMENT[N].csv`. A session is calibrated from each choice
+//! of one rest, one held movement that closes and one that opens, and scored on the others.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -9,7 +8,6 @@ use anyhow::Context;
 use serde::Serialize;
 use tenax_logic::emg::constants::Fitted;
 use tenax_logic::emg::decide::{Decide, Wish};
-use tenax_logic::emg::level::level_of;
 use tenax_logic::emg::mains::mains_of;
 use tenax_logic::emg::model::{EmgModel, Refusal};
 use tenax_logic::emg::trust::Quality;
@@ -20,15 +18,13 @@ use tenax_sim::replay::meaning::Motion;
 use tenax_sim::replay::muscles::{Muscles, calibrate};
 
 pub(super) const PREFIX: &str = "emg_two_channel_";
-/// The window in which a decision is scored, s.
+/// Window of a score, s.
 const WINDOW_S: f64 = 0.25;
-/// The delay of the front end's 4 Hz low-pass, s: what a window of the recording does to the envelope. The recordings begin
-/// within a contraction, of which the front end has heard nothing before.
+/// The delay of the front end's 4 Hz low-pass, s; the recordings begin within a contraction.
 const FRONT_END_S: f64 = 0.056;
 
 #[derive(Clone, Debug)]
 pub struct Movement {
-    /// Its name without the session's.
     pub name: String,
     wants: Wish,
     never: Vec<Wish>,
@@ -40,7 +36,7 @@ pub struct Session {
     /// Its letter; the first has none.
     pub name: String,
     pub movements: Vec<Movement>,
-    calibrations: Vec<Calibrated>,
+    pub calibrations: Vec<Calibrated>,
 }
 
 /// A choice of repetitions to calibrate from: rest, close, open.
@@ -48,8 +44,6 @@ pub struct Session {
 pub struct Calibrated {
     choice: [usize; 3],
     pub model: Result<EmgModel, Refusal>,
-    /// Windows of other held movements that are nearest to the middle of what they mean.
-    nearest: u32,
 }
 
 const fn wish(motion: Motion) -> Wish {
@@ -117,24 +111,6 @@ impl Movement {
         Played { movement: self, verdicts, doubts }
     }
 
-    /// Windows whose mean is nearest to the middle of what they mean in this calibration.
-    fn nearest(&self, model: &EmgModel) -> u32 {
-        let middles = [(Wish::Rest, model.rest()), (Wish::Close, model.close()), (Wish::Open, model.open())];
-        let is_right = |from_s: &f64| {
-            let own = self.muscles.pairs.iter().filter(|(t_s, _)| (*from_s..from_s + WINDOW_S).contains(t_s));
-            let levels: Vec<_> =
-                own.map(|(_, pair)| pair.map(|uv| f64::from(level_of(uv.unwrap_or(0))))).collect();
-            let mean = [0, 1].map(|n: usize| {
-                levels.iter().map(|level| level[n]).sum::<f64>() / levels.len().max(1) as f64
-            });
-            let distance =
-                |middle: [i32; 2]| (f64::from(middle[0]) - mean[0]).hypot(f64::from(middle[1]) - mean[1]);
-            let nearest = middles.iter().min_by(|a, b| distance(a.1).total_cmp(&distance(b.1)));
-            nearest.is_some_and(|(wish, _)| *wish == self.wants)
-        };
-        self.windows().filter(is_right).count() as u32
-    }
-
     /// Begins of its windows, s.
     fn windows(&self) -> impl Iterator<Item = f64> + Clone {
         let count = (self.muscles.duration_s / WINDOW_S + 0.01) as u32;
@@ -145,7 +121,6 @@ impl Movement {
 #[derive(Clone, Debug)]
 pub struct Played<'a> {
     movement: &'a Movement,
-    /// By the recording's own time, s.
     pub verdicts: Vec<(f64, Verdict)>,
     /// When a channel's quality became this.
     pub doubts: Vec<(f64, usize, Quality)>,
@@ -154,20 +129,18 @@ pub struct Played<'a> {
 impl Played<'_> {
     /// The longest stretch of what must not be, ms.
     pub fn wrong_ms(&self) -> u32 {
-        self.movement.never.iter().map(|&wish| self.longest_ms(wish)).max().unwrap_or(0)
-    }
-
-    /// The longest stretch of this wish, ms.
-    fn longest_ms(&self, wish: Wish) -> u32 {
-        let (mut longest_s, mut since) = (0.0f64, None);
-        for &(t_s, verdict) in &self.verdicts {
-            if verdict.wish == wish {
-                longest_s = longest_s.max(t_s - *since.get_or_insert(t_s) + 1.0 / 240.0);
-            } else {
-                since = None;
+        let longest_s = |&wish: &Wish| {
+            let (mut longest_s, mut since) = (0.0f64, None);
+            for &(t_s, verdict) in &self.verdicts {
+                if verdict.wish == wish {
+                    longest_s = longest_s.max(t_s - *since.get_or_insert(t_s) + 1.0 / 240.0);
+                } else {
+                    since = None;
+                }
             }
-        }
-        (longest_s * 1e3).round() as u32
+            longest_s
+        };
+        (self.movement.never.iter().map(longest_s).fold(0.0, f64::max) * 1e3).round() as u32
     }
 
     pub fn windows(&self) -> Option<[u32; 2]> {
@@ -214,7 +187,6 @@ pub struct Report {
     /// Windows of 0.25 s of held movements, not calibrated from, that move the hand the right way, over all calibrations.
     pub right: f64,
     pub worst_right: f64,
-    pub nearest_right: f64,
     /// The longest motion that must not be, ms, over all calibrations, by movement.
     pub wrong_ms: BTreeMap<String, u32>,
     /// Doubts of a sensor: each of these is a muscle.
@@ -233,25 +205,14 @@ impl Session {
         for rest in held(Movement::is_rest) {
             for &close in &closes {
                 for &open in &opens {
-                    calibrations.push(session.calibrated([rest, close, open]));
+                    let choice = [rest, close, open];
+                    let model = calibrate(choice.map(|n| &session.movements[n].muscles));
+                    calibrations.push(Calibrated { choice, model });
                 }
             }
         }
         session.calibrations = calibrations;
         session
-    }
-
-    fn calibrated(&self, choice: [usize; 3]) -> Calibrated {
-        let model = calibrate(choice.map(|n| &self.movements[n].muscles));
-        let nearest = model.map_or(0, |model| {
-            let others = self.others(choice).filter(|movement| movement.is_scored());
-            others.map(|movement| movement.nearest(&model)).sum()
-        });
-        Calibrated { choice, model, nearest }
-    }
-
-    pub fn calibrations(&self) -> &[Calibrated] {
-        &self.calibrations
     }
 
     fn others(&self, choice: [usize; 3]) -> impl Iterator<Item = &Movement> {
@@ -267,11 +228,10 @@ impl Session {
             refused: 0,
             right: 0.0,
             worst_right: 1.0,
-            nearest_right: 0.0,
             wrong_ms: BTreeMap::new(),
             doubts: 0,
         };
-        let (mut right, mut nearest, mut all) = (0, 0, 0);
+        let (mut right, mut all) = (0, 0);
         for calibrated in &self.calibrations {
             let Ok(model) = &calibrated.model else {
                 report.refused += 1;
@@ -290,10 +250,9 @@ impl Session {
                 }
             }
             report.worst_right = report.worst_right.min(f64::from(own_right) / f64::from(own_all.max(1)));
-            (right, all, nearest) = (right + own_right, all + own_all, nearest + calibrated.nearest);
+            (right, all) = (right + own_right, all + own_all);
         }
         report.right = f64::from(right) / f64::from(all.max(1));
-        report.nearest_right = f64::from(nearest) / f64::from(all.max(1));
         report
     }
 }

@@ -1,5 +1,3 @@
-//! Each condition of the decision on both sides of its boundary, by levels and constants that no training changes.
-
 use super::*;
 
 static F: Fitted = Fitted {
@@ -24,7 +22,6 @@ static F: Fitted = Fitted {
     both: 300,
     busy: 450,
 };
-/// Rest, closing, opening and the spread of rest, whose rises are the least that a calibration takes.
 const WEAK: [[i32; 2]; 4] = [[15_600, 15_700], [16_850, 16_100], [15_750, 16_940], [100, 150]];
 
 fn model([rest, close, open, spread]: [[i32; 2]; 4]) -> EmgModel {
@@ -85,7 +82,6 @@ fn electrodes_that_are_swapped_are_the_same_wearer() {
 #[derive(Clone, Copy)]
 struct State {
     wish: Wish,
-    /// Shares of both sites and the place.
     mean: [i32; 3],
     since: [i32; 2],
     trough: [i32; 2],

@@ -5,7 +5,6 @@ use std::f64::consts::TAU;
 const ACTIVE_UV: i32 = 120_000;
 const AT_S: [f64; 3] = [0.005, 0.008, 0.011];
 
-/// Trustes an envelope in mV for so long.
 fn watch(seconds: f64, of: impl Fn(f64) -> f64) -> Trust {
     let mut watch = Trust::default();
     go_on(&mut watch, 0.0, seconds, of);

@@ -9,7 +9,6 @@ const FIGURE_14: Curve = Curve {
 const OPEN: Hints = Hints { unloaded: true, force_mn: None };
 const NOTHING: Hints = Hints { unloaded: false, force_mn: None };
 
-/// The level of a force, N, under a shear of `q` times it.
 fn level(force_n: f64, q: f64) -> i32 {
     let phase = FRAC_PI_2 * (force_n / 1.7).powf(1.0 / (6.0_f64 / 1.7).log2());
     let squared = 1.0 + 4.0 * q * q;
@@ -48,7 +47,6 @@ fn whatever_the_shear_the_force_is_within_what_is_said() {
             state ^= state << 17;
             low + (high - low) * (state >> 11) as f64 / (1_u64 << 53) as f64
         };
-        std::println!("seed {seed}");
         let (mut tracker, mut at) = (opened(), (0.0, 0.0));
         for _ in 0..6 {
             let to = (between(0.0, 5.9), between(0.0, 0.5));

@@ -1,5 +1,3 @@
-//! Films with hum, and what is left of it in their envelopes; each beside films that hear none.
-
 use core::f64::consts::TAU;
 use std::vec::Vec;
 
@@ -8,17 +6,12 @@ use crate::config::Config;
 use crate::vibration::VibrationDetector;
 use crate::vibration::settings::VibrationConfig;
 
-/// One in 16 of a sample, as the sum of four dithered codes is fine.
 fn sample(x: f64, noise: u32) -> u16 {
     (8_192.0 + x + f64::from(noise % 1_000) / 1_000.0) as u16
 }
 
-/// Envelopes of all films, samples, once a tick, of what `heard` gives at each instant, s.
-fn envelopes(for_s: f64, heard: impl Fn(f64) -> f64) -> Vec<f64> {
-    envelopes_of(&Config::default().vibration, for_s, heard)
-}
-
-fn envelopes_of(config: &VibrationConfig, for_s: f64, heard: impl Fn(f64) -> f64) -> Vec<f64> {
+fn envelopes(mains_60_hz: bool, for_s: f64, heard: impl Fn(f64) -> f64) -> Vec<f64> {
+    let config = VibrationConfig { mains_60_hz, ..Config::default().vibration };
     let mut detector = VibrationDetector::default();
     let mut noise = 1_u32;
     (0..(for_s * f64::from(FRAME_HZ)) as u32)
@@ -28,7 +21,7 @@ fn envelopes_of(config: &VibrationConfig, for_s: f64, heard: impl Fn(f64) -> f64
                 noise = noise.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
                 sample(heard(t_s) * (0.4 + 0.1 * film as f64), noise >> 8)
             });
-            detector.process(config, &samples, None);
+            detector.process(&config, &samples, None);
             detector.envelopes().iter().map(|&e| f64::from(e) / 65_536.0).sum::<f64>() / PVDF_COUNT as f64
         })
         .collect()
@@ -39,7 +32,7 @@ fn mean(values: &[f64]) -> f64 {
 }
 
 fn left(hum: impl Fn(f64) -> f64) -> f64 {
-    let all = envelopes(6.0, hum);
+    let all = envelopes(false, 6.0, hum);
     mean(&all[8_000..]) / mean(&all[60..120])
 }
 
@@ -51,13 +44,11 @@ fn hum_goes_also_where_the_mains_is_half_a_hertz_off() {
     }
 }
 
-/// And stays where nobody has said that the mains is at 60 Hz.
 #[test]
 fn hum_of_60_hz_goes_where_the_mains_is_said_to_be_that() {
     for (mains_60_hz, most) in [(true, 0.08), (false, 1.1)] {
-        let config = VibrationConfig { mains_60_hz, ..Config::default().vibration };
         for hz in [59.5, 60.0, 60.5] {
-            let all = envelopes_of(&config, 9.0, |t_s| 30.0 * (TAU * hz * t_s + 1.0).sin());
+            let all = envelopes(mains_60_hz, 9.0, |t_s| 30.0 * (TAU * hz * t_s + 1.0).sin());
             let left = mean(&all[14_000..]) / mean(&all[60..120]);
             assert!(left < most && (mains_60_hz || left > 0.5), "{hz} Hz, {mains_60_hz}: {left}");
         }
@@ -79,8 +70,8 @@ fn a_burst_of_slip_is_heard_as_loud_as_without_hum() {
         if (0.0..0.025).contains(&since) { 40.0 * (TAU * 40.0 * since).sin() } else { 0.0 }
     };
     let peak = |all: &[f64]| all[10_000..10_200].iter().copied().fold(0.0, f64::max);
-    let with_hum = peak(&envelopes(5.2, |t_s| 30.0 * (TAU * 50.2 * t_s).sin() + bump(t_s)));
-    let without = peak(&envelopes(5.2, bump));
+    let with_hum = peak(&envelopes(false, 5.2, |t_s| 30.0 * (TAU * 50.2 * t_s).sin() + bump(t_s)));
+    let without = peak(&envelopes(false, 5.2, bump));
     assert!((with_hum / without - 1.0).abs() < 0.15, "{with_hum} of {without}");
 }
 

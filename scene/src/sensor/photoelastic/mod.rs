@@ -22,6 +22,9 @@ use tenax_hal_shim::channel::SCANS_PER_FRAME;
 pub const HEAD_STRIP: Slider =
     Slider { mass_kg: 0.010, stiffness_n_per_m: 10_000.0, damping_ns_per_m: 4.0, friction: METAL };
 
+/// Noise of a frame's sample of a head without a scene, rms, mV.
+const NOISE_MV: f64 = 0.5;
+
 #[derive(Debug)]
 pub struct Head {
     layer: Layer,
@@ -67,7 +70,7 @@ impl Head {
             knocks: Vec::new(),
             share: 1.0,
             knock_mn_per_mv: 0.0,
-            noise_mv: Photoelastic::default().noise_mv.get(),
+            noise_mv: NOISE_MV,
             noise: Noise::new(seeds.noise, Source::Head),
             last_shear_n: 0.0,
         }

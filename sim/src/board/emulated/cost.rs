@@ -2,61 +2,39 @@
 
 use std::ops::Range;
 use std::path::Path;
-use std::sync::mpsc::Sender;
 
 use rigless::emulator::{Hit, Host};
 use rigless::image::Image;
 use rigless::soc::Width;
 
-use super::Tick;
 use crate::board::TickCost;
 use crate::image::symbols::Symbols;
 
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct CostMeter {
-    tick: u64,
-    after_tick: u64,
+    pub tick: u64,
+    pub after_tick: u64,
     entered: Option<u64>,
-    count: u64,
+    /// Ticks so far.
+    pub count: u64,
     sum: u64,
     max: u64,
-    told: Option<Sender<Tick>>,
 }
 
 impl CostMeter {
-    pub fn new(symbols: &Symbols, told: Option<Sender<Tick>>) -> Self {
-        Self {
-            tick: symbols.tick,
-            after_tick: symbols.after_tick,
-            entered: None,
-            count: 0,
-            sum: 0,
-            max: 0,
-            told,
-        }
-    }
-
-    pub fn watched(&self) -> [u64; 2] {
-        [self.tick, self.after_tick]
+    pub fn new(symbols: &Symbols) -> Self {
+        Self { tick: symbols.tick, after_tick: symbols.after_tick, ..Self::default() }
     }
 
     pub fn hit(&mut self, hit: Hit) {
         if hit.address == self.tick {
             self.entered = Some(hit.instruction_count);
-            if let Some(told) = &self.told {
-                // Nobody listening is no reason to stop.
-                let _ = told.send(Tick { at_ns: hit.at.0, instruction_count: hit.instruction_count });
-            }
         } else if let Some(entered) = self.entered.take() {
             let instructions = hit.instruction_count - entered;
             self.count += 1;
             self.sum += instructions;
             self.max = self.max.max(instructions);
         }
-    }
-
-    pub const fn ticks(&self) -> u64 {
-        self.count
     }
 
     /// What it counted, given everything that the core executed in a second. None if there was no tick.

@@ -1,5 +1,5 @@
-//! What the bridge's edges leave in the films' codes: as the motor's current is switched, ground and reference jump for an instant, and
-//! an edge shortly before a film's sampling ends is converted with it.
+//! The bridge's edges in the films' codes: ground and reference jump for an instant, and an edge shortly before a film's sampling ends
+//! is converted with it.
 
 use tenax_hal_shim::channel::{CODE_MAX, PVDF_COUNT};
 use tenax_hal_shim::frame::Scan;

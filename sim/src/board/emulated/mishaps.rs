@@ -2,27 +2,22 @@
 
 use rigless::device::Level;
 use rigless::emulator::{Access, AccessKind, Host, InterruptLine, Stop};
-use rigless::mcu::Operate;
 use rigless::session::Session;
 use rigless::soc::Width;
-use rigless::time::VirtualNanos;
 use tenax_hal_shim::channel::SCAN_HZ;
 
 use super::Mishap;
+use super::flash::FlashArray;
+use super::nucleo::Nucleo;
 use super::wires::Wires;
-use crate::board_model::flash::FlashArray;
-use crate::board_model::nucleo::Nucleo;
-use crate::board_model::part::Part;
 
-/// DMA2's flags of its streams 0 to 3, and where a written one clears them.
+/// DMA2 (RM0383, section 9.5): flags of streams 0 to 3, where a written one clears them, stream 0's configuration and address.
 const DMA2_LISR: u64 = 0x4002_6400;
 const DMA2_LIFCR: u64 = 0x4002_6408;
-/// The flag that stream 0 has come to its end.
-const TCIF0: u64 = 1 << 5;
-/// DMA2 stream 0's configuration: bit 0 switches it on.
 const DMA2_S0CR: u64 = 0x4002_6410;
-/// DMA2 stream 0's address in memory.
 const DMA2_S0M0AR: u64 = 0x4002_641C;
+const TCIF0: u64 = 1 << 5;
+const S0CR_EN: u64 = 1;
 /// The voltage detector's interrupt (RM0383, table 37).
 const PVD: InterruptLine = InterruptLine::new(1).expect("every core has it");
 /// The voltage detector's output (RM0383, section 5.4.2).
@@ -53,15 +48,14 @@ impl Mishaps {
     /// The core made an access. `rigless` finds a crystal's empty pin ready after its start-up time, at 0 Hz: it never gets so far.
     pub fn accessed(&mut self, access: &Access, session: &mut Session<Nucleo>) {
         if self.has_no_crystal && access.kind == AccessKind::Write && access.address == RCC_CR {
-            let (mcu, now) = (&mut session.board_mut().mcu, access.virtual_time);
-            let control = mcu.peek(now, RCC_CR, Width::W32).unwrap_or(0);
+            let (board, now) = (session.board_mut(), access.virtual_time);
+            let control = board.peek(now, RCC_CR);
             if control & HSEON != 0 {
-                set(mcu, now, RCC_CR, control & !HSEON);
+                board.poke(now, RCC_CR, control & !HSEON);
             }
         }
     }
 
-    /// Does what is due at `scan`.
     pub fn happen(
         &mut self,
         scan: usize,
@@ -71,79 +65,68 @@ impl Mishaps {
         host: &mut dyn Host,
     ) {
         if let Some(own) = self.lent.take() {
-            let placed = host.program(PVD_VECTOR, Width::W32, own);
-            debug_assert!(placed.is_ok(), "{PVD_VECTOR:#x} is in the flash");
+            point_pvd_at(own, host);
         }
         let due: Vec<_> = self.due.extract_if(.., |(at, _)| *at <= scan).collect();
         let now = stop.at;
         for (_, mishap) in due {
             if matches!(mishap, Mishap::BrownsOut | Mishap::ResetByPin) {
                 session.reset_by_pin(now, stop.instruction_count, host);
-                if mishap == Mishap::BrownsOut {
-                    session.board_mut().mcu.browned_out(now);
-                }
-                continue;
             }
-            let mcu = &mut session.board_mut().mcu;
+            let board = session.board_mut();
             match mishap {
-                Mishap::BrownsOut | Mishap::ResetByPin => {}
+                Mishap::ResetByPin => {}
+                Mishap::BrownsOut => board.browned_out(now),
                 Mishap::SupplyIs(mv) => {
-                    mcu.chip.set_supply(mv);
+                    board.chip.set_supply(mv);
                     // `rigless` leads the detector's output nowhere.
-                    if mcu.peek(now, PWR_CSR, Width::W32).unwrap_or(0) & PVDO != 0 {
-                        host.set_interrupt(PVD, Level::High);
-                        host.set_interrupt(PVD, Level::Low);
+                    if board.peek(now, PWR_CSR) & PVDO != 0 {
+                        interrupt(host);
                     }
                 }
                 Mishap::CrystalStops(comes_back) => {
                     self.has_no_crystal = !comes_back;
-                    if mcu.peek(now, RCC_CR, Width::W32).unwrap_or(0) & CSSON != 0 {
+                    if board.peek(now, RCC_CR) & CSSON != 0 {
                         // `rigless` lets nobody raise the core's own exception: another's vector leads to its handler for an instant.
                         let [handler, own] =
                             [NMI_VECTOR, PVD_VECTOR].map(|at| host.read(at, Width::W32).unwrap_or(0));
-                        let placed = host.program(PVD_VECTOR, Width::W32, handler);
-                        debug_assert!(placed.is_ok(), "{PVD_VECTOR:#x} is in the flash");
+                        point_pvd_at(handler, host);
                         self.lent = Some(own);
-                        host.set_interrupt(PVD, Level::High);
-                        host.set_interrupt(PVD, Level::Low);
+                        interrupt(host);
                     }
                 }
                 Mishap::DmaStalls => {
-                    stop_stream(mcu, now);
+                    let control = board.peek(now, DMA2_S0CR);
+                    board.poke(now, DMA2_S0CR, control & !S0CR_EN);
                 }
                 Mishap::DmaFails => {
-                    let ended = flags(mcu, now) & TCIF0;
-                    let control = stop_stream(mcu, now);
-                    // That it was stopped for this is no end: the driver would read a frame that is not whole, and send the stream
-                    // back to its ring before it has stumbled.
-                    set(mcu, now, DMA2_LIFCR, TCIF0 & !ended);
-                    set(mcu, now, DMA2_S0M0AR, NOWHERE);
-                    set(mcu, now, DMA2_S0CR, control);
+                    let ended = board.peek(now, DMA2_LISR) & TCIF0;
+                    let control = board.peek(now, DMA2_S0CR);
+                    board.poke(now, DMA2_S0CR, control & !S0CR_EN);
+                    // Its end is no end: the driver would read half a frame, and restart the ring before it has stumbled.
+                    board.poke(now, DMA2_LIFCR, TCIF0 & !ended);
+                    board.poke(now, DMA2_S0M0AR, NOWHERE);
+                    board.poke(now, DMA2_S0CR, control);
                 }
                 Mishap::Garbage(bytes) => {
-                    if let Some(line) = mcu.line() {
+                    if let Some(line) = board.line() {
                         line.down.extend(bytes);
                     }
                 }
                 Mishap::CoreHangs => host.hold(true),
-                Mishap::PowerFails { words } => flash.cut_power_after(words),
-                Mishap::BridgeIsOff(is_off) => Wires::new(mcu, now).bridge_fault(is_off),
+                Mishap::PowerFails(words) => flash.cut_power_after(words),
+                Mishap::BridgeIsOff(is_off) => Wires::new(board, now).bridge_fault(is_off),
             }
         }
     }
 }
 
-fn stop_stream(mcu: &mut Part, now: VirtualNanos) -> u64 {
-    let control = mcu.peek(now, DMA2_S0CR, Width::W32).unwrap_or(0);
-    set(mcu, now, DMA2_S0CR, control & !1);
-    control
+fn interrupt(host: &mut dyn Host) {
+    host.set_interrupt(PVD, Level::High);
+    host.set_interrupt(PVD, Level::Low);
 }
 
-fn flags(mcu: &mut Part, now: VirtualNanos) -> u64 {
-    mcu.peek(now, DMA2_LISR, Width::W32).unwrap_or(0)
-}
-
-fn set(mcu: &mut Part, now: VirtualNanos, address: u64, value: u64) {
-    let written = mcu.write(now, address, Width::W32, value);
-    debug_assert!(written.is_ok(), "{address:#x} is a register of the chip");
+fn point_pvd_at(handler: u64, host: &mut dyn Host) {
+    let placed = host.program(PVD_VECTOR, Width::W32, handler);
+    debug_assert!(placed.is_ok(), "{PVD_VECTOR:#x} is in the flash");
 }

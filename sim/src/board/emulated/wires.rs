@@ -2,12 +2,13 @@
 
 use rigless::mcu::Operate;
 use rigless::soc::Width;
+use rigless::soc::stm32f427::peripherals::adc::Channel;
 use rigless::time::VirtualNanos;
 use tenax_hal_shim::channel::SCAN;
 use tenax_hal_shim::frame::Scan;
 use tenax_hal_shim::motor::{Duty, MotorDrive};
 
-use crate::board_model::part::Part;
+use super::nucleo::Nucleo;
 
 const GPIOA_MODER: u64 = 0x4002_0000;
 const GPIOC_PUPDR: u64 = 0x4002_080C;
@@ -34,43 +35,44 @@ const CR2_ADON: u32 = 1;
 const CR2_EXTSEL: u32 = 0xF << 24;
 const CR2_EXTSEL_TIM3_TRGO: u32 = 0x8 << 24;
 const CR2_EXTEN: u32 = 0x3 << 28;
+const CR2_SWSTART: u32 = 1 << 30;
 const PULL_UP: u32 = 0b01;
 const PULL_DOWN: u32 = 0b10;
 const MODER_ALTERNATE: u32 = 0b10;
 const AF_TIM4: u32 = 2;
 
 pub struct Wires<'a> {
-    mcu: &'a mut Part,
+    board: &'a mut Nucleo,
     now: VirtualNanos,
 }
 
 impl<'a> Wires<'a> {
     /// The wires as they are at `now`, to which the chip has advanced.
-    pub fn new(mcu: &'a mut Part, now: VirtualNanos) -> Self {
-        Self { mcu, now }
+    pub fn new(board: &'a mut Nucleo, now: VirtualNanos) -> Self {
+        Self { board, now }
     }
 
     fn peek(&mut self, address: u64) -> u32 {
-        self.mcu.peek(self.now, address, Width::W32).unwrap_or(0) as u32
+        self.board.peek(self.now, address) as u32
     }
 
-    /// What the select lines S0 to S3 show.
     pub fn select(&mut self) -> u8 {
         (self.peek(GPIOB_ODR) >> 12 & 0xF) as u8
     }
 
-    pub fn motor(&mut self) -> Result<MotorDrive, BothSides> {
+    /// How the bridge is driven. None: both sides at once.
+    pub fn motor(&mut self) -> Option<MotorDrive> {
         let (close, open) = (self.side(8, TIM1_CCR1, CCER_CC1E), self.side(9, TIM1_CCR2, CCER_CC2E));
         match (close, open) {
-            (None, None) => Ok(MotorDrive::Coast),
-            (Some(duty), None) => Ok(MotorDrive::Close(duty)),
-            (None, Some(duty)) => Ok(MotorDrive::Open(duty)),
-            (Some(_), Some(_)) => Err(BothSides),
+            (None, None) => Some(MotorDrive::Coast),
+            (Some(duty), None) => Some(MotorDrive::Close(duty)),
+            (None, Some(duty)) => Some(MotorDrive::Open(duty)),
+            (Some(_), Some(_)) => None,
         }
     }
 
     pub fn bridge_begins_us(&mut self) -> f64 {
-        let since_us = self.mcu.since_pulse_ns(self.now) as f64 / 1e3;
+        let since_us = self.board.since_pulse_ns(self.now) as f64 / 1e3;
         since_us - f64::from(self.peek(TIM1_CNT)) / 100.0
     }
 
@@ -83,7 +85,6 @@ impl<'a> Wires<'a> {
         (alternate && on).then_some(Duty::per_mille(per_mille as u16))
     }
 
-    /// How the vibration motor on PB6 is driven: the pin is the timer's, the timer counts, and its output is on.
     pub fn vibration(&mut self) -> Duty {
         let compare = self.peek(TIM4_CCR1);
         let wired = compare > 0
@@ -96,40 +97,38 @@ impl<'a> Wires<'a> {
     }
 
     pub fn put(&mut self, scan: &Scan) {
-        self.mcu.put(self.now, SCAN.iter().zip(scan).map(|(rank, &code)| (rank.adc, code)));
+        for (rank, &code) in SCAN.iter().zip(scan) {
+            let channel = Channel::new(rank.adc).expect("the channel map has pin channels");
+            self.board.chip.adc[0].set_input(channel, u32::from(code));
+        }
     }
 
-    /// Presses or releases the button on PC13. The model lets a peripheral's owner drive a pin and nobody else, but a pin
-    /// that nothing drives reads its pull: the button is one.
+    /// Presses or releases the button on PC13.
     pub fn button(&mut self, is_down: bool) {
         self.pull(13, is_down);
     }
 
-    /// The bridge pulls its nFAULT on PC8 low, or lets it go.
+    /// Pulls the bridge's nFAULT on PC8 low, or lets it go.
     pub fn bridge_fault(&mut self, is_low: bool) {
         self.pull(8, is_low);
     }
 
+    /// Pulls a pin of port C: `rigless` lets nobody but a peripheral drive a pin, and one that nothing drives reads its pull.
     fn pull(&mut self, pin: u32, is_low: bool) {
         let at = 2 * pin;
         let pulls = self.peek(GPIOC_PUPDR) & !(0b11 << at) | if is_low { PULL_DOWN } else { PULL_UP } << at;
         if pulls != self.peek(GPIOC_PUPDR) {
             // Before the image has clocked the port nothing reads it either.
-            let _ = self.mcu.write(self.now, GPIOC_PUPDR, Width::W32, u64::from(pulls));
+            let _ = self.board.chip.write(self.now, GPIOC_PUPDR, Width::W32, u64::from(pulls));
         }
     }
 
-    /// Draws the one wire that the emulator leaves out: a pulse of TIM3's TRGO starts the converter's sequence if the
-    /// converter listens to it. Says whether it did.
-    pub fn trigger(&mut self) -> bool {
+    /// A pulse of TIM3's TRGO starts the converter's sequence if the converter listens to it: the wire that `rigless` leaves out.
+    pub fn trigger(&mut self) {
         let cr2 = self.peek(ADC1_CR2);
-        let listens = cr2 & CR2_ADON != 0 && cr2 & CR2_EXTEN != 0 && cr2 & CR2_EXTSEL == CR2_EXTSEL_TIM3_TRGO;
-        if listens {
-            self.mcu.trigger(self.now);
+        let on_trgo = cr2 & CR2_EXTEN != 0 && cr2 & CR2_EXTSEL == CR2_EXTSEL_TIM3_TRGO;
+        if cr2 & CR2_ADON != 0 && on_trgo {
+            self.board.poke(self.now, ADC1_CR2, u64::from(cr2 | CR2_SWSTART));
         }
-        listens
     }
 }
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct BothSides;

@@ -1,28 +1,28 @@
-//! What goes on around the chip while the emulator runs it: every 125 us a plant's scan goes in, and what the chip does
-//! comes out.
+//! The world around the emulated chip: every 125 us a plant's scan goes in, and what the chip does comes out.
 
+use std::collections::VecDeque;
 use std::ops::Range;
 use std::sync::mpsc::Sender;
 use std::sync::{Arc, Mutex, PoisonError};
 
+use anyhow::anyhow;
 use rigless::emulator::{Driver, Host, Settled, Stop};
 use rigless::session::Session;
 use rigless::time::VirtualNanos;
 use tenax_hal_shim::channel::{FRAMES_PER_SLOW_FRAME, SCAN_HZ, SCANS_PER_FRAME};
 use tenax_hal_shim::frame::{Scan, scan_of_pins};
 use tenax_hal_shim::motor::{Duty, MotorDrive};
-use tenax_hal_shim::wire::{Down, Received, Receiver};
+use tenax_hal_shim::wire::{Answer, Down, Received, Receiver};
 use tenax_scene::plant::Plant;
 
-use super::Broken;
-use super::commands::Commands;
+use super::Options;
 use super::cost::{CostMeter, stack_used};
 use super::coupling::Coupling;
+use super::flash::FlashArray;
 use super::mishaps::Mishaps;
+use super::nucleo::Nucleo;
 use super::wires::Wires;
 use crate::board::TickCost;
-use crate::board_model::flash::FlashArray;
-use crate::board_model::nucleo::Nucleo;
 use crate::image::symbols::Symbols;
 use tenax_frames::link::Encoder;
 
@@ -44,10 +44,11 @@ pub struct World {
     plant: Arc<Mutex<dyn Plant>>,
     pub tick_cost: Option<TickCost>,
     pub stack_bytes: Option<u64>,
-    pub broken: Option<Broken>,
-    pub cost: CostMeter,
-    pub coupling: Option<Coupling>,
-    pub commands: Commands,
+    pub broken: Option<anyhow::Error>,
+    cost: CostMeter,
+    coupling: Option<Coupling>,
+    sent_commands: VecDeque<Received<Down>>,
+    taken_before: Vec<u32>,
     pub flash: FlashArray,
     scans: usize,
     scanned: usize,
@@ -71,9 +72,7 @@ impl World {
     pub fn new(
         plant: Arc<Mutex<dyn Plant>>,
         frames: u32,
-        mishaps: Mishaps,
-        cost: CostMeter,
-        flash: FlashArray,
+        options: &Options,
         symbols: &Symbols,
         reports: Sender<Stretch>,
     ) -> Self {
@@ -82,10 +81,11 @@ impl World {
             tick_cost: None,
             stack_bytes: None,
             broken: None,
-            cost,
-            coupling: None,
-            commands: Commands::default(),
-            flash,
+            cost: CostMeter::new(symbols),
+            coupling: options.coupling,
+            sent_commands: VecDeque::new(),
+            taken_before: Vec::new(),
+            flash: FlashArray::new(1_000 * options.word_us),
             scans: frames as usize * SCANS_PER_FRAME,
             scanned: 0,
             drained: 0,
@@ -95,7 +95,7 @@ impl World {
             encoder: Encoder::default(),
             sent: Receiver::new(),
             feedback: Vec::new(),
-            mishaps,
+            mishaps: Mishaps::new(&options.mishaps),
             resets: 0,
             executed: None,
             stack: symbols.stack.clone(),
@@ -103,6 +103,15 @@ impl World {
             stretch: Stretch::default(),
             reports: Some(reports),
         }
+    }
+
+    /// The commands that were answered, each with the tick before which the image took it.
+    pub fn taken(&mut self, answers: &[(u16, Answer)]) -> Vec<(u32, Received<Down>)> {
+        let answered = answers.iter().filter_map(|(of, _)| {
+            // What the line swallowed was never answered.
+            std::iter::from_fn(|| self.sent_commands.pop_front()).find(|command| command.sequence == *of)
+        });
+        self.taken_before.iter().copied().zip(answered).collect()
     }
 
     /// One scan period of the world. None when it is over.
@@ -114,10 +123,13 @@ impl World {
         pulse: bool,
     ) -> Option<()> {
         let mut plant = self.plant.lock().unwrap_or_else(PoisonError::into_inner);
-        let mut wires = Wires::new(&mut session.board_mut().mcu, stop.at);
+        let mut wires = Wires::new(session.board_mut(), stop.at);
         if self.scanned < self.scans {
-            let Ok(drive) = wires.motor() else {
-                self.broken = Some(Broken::BothSides { at_s: seconds(stop.at) });
+            let Some(drive) = wires.motor() else {
+                self.broken = Some(anyhow!(
+                    "the image drove both sides of the motor bridge at {} s: on a real board this shorts the supply",
+                    seconds(stop.at)
+                ));
                 return None;
             };
             let vibration = wires.vibration();
@@ -141,7 +153,7 @@ impl World {
             wires.trigger();
         }
         let scan = self.scanned;
-        if let Some(line) = session.board_mut().mcu.line() {
+        if let Some(line) = session.board_mut().line() {
             let opening = line.offered.take().map(|nonce| Down::Open { nonce });
             for command in opening.into_iter().chain(plant.commands()) {
                 if command == Down::Hello {
@@ -149,12 +161,12 @@ impl World {
                 }
                 let (number, frame) = self.encoder.frame(&command);
                 line.down.extend(frame);
-                self.commands.send(Received { sequence: number, message: command });
+                self.sent_commands.push_back(Received { sequence: number, message: command });
             }
             for byte in plant.line_bytes() {
                 line.down.push_back(byte);
                 if let Some(Ok(command)) = self.sent.push::<Down>(byte) {
-                    self.commands.send(command);
+                    self.sent_commands.push_back(command);
                 }
             }
         }
@@ -167,7 +179,7 @@ impl World {
     }
 
     fn report(&mut self, session: &mut Session<Nucleo>) {
-        if let Some(line) = session.board_mut().mcu.line() {
+        if let Some(line) = session.board_mut().line() {
             self.stretch.line = std::mem::take(&mut line.up);
         }
         if let Some(reports) = &self.reports {
@@ -189,9 +201,11 @@ impl Driver<Nucleo> for World {
     fn on_settled(&mut self, session: &mut Session<Nucleo>, host: &mut dyn Host, settled: Settled) {
         match settled {
             Settled::Hit(hit) if hit.address == self.command_entry => {
-                self.commands.take(self.cost.ticks() as u32)
+                self.taken_before.push(self.cost.count as u32)
             }
-            Settled::Hit(hit) if self.cost.watched().contains(&hit.address) => self.cost.hit(hit),
+            Settled::Hit(hit) if [self.cost.tick, self.cost.after_tick].contains(&hit.address) => {
+                self.cost.hit(hit)
+            }
             Settled::Access { access, .. } => {
                 self.flash.accessed(&access, session, host);
                 self.mishaps.accessed(&access, session);
@@ -214,7 +228,7 @@ impl Driver<Nucleo> for World {
             // A reset ends a hang.
             host.hold(false);
         }
-        let pulses = session.board_mut().mcu.trigger_pulses(stop.at);
+        let pulses = session.board_mut().trigger_pulses(stop.at);
         let pulse = pulses > self.pulses;
         self.pulses = pulses;
         let due = self.stepped_at.is_some_and(|at| stop.at.0 >= at.0 + SCAN_NS);
@@ -228,7 +242,7 @@ impl Driver<Nucleo> for World {
                 return None;
             }
         } else if self.stepped_at.is_none() && stop.at.0 > BOOT_NS {
-            self.broken = Some(Broken::NeverScanned);
+            self.broken = Some(anyhow!("the image had not begun to scan three seconds after its start"));
             return None;
         }
         Some(VirtualNanos(stop.at.0 + if pulse { SCAN_NS } else { SEEK_NS }))

@@ -71,19 +71,3 @@ impl Downlink {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn only_who_asked_for_a_session_gives_its_number_back() {
-        let mut down = Downlink::default();
-        down.offered(0, 7);
-        assert_eq!(down.opening(), []);
-        let hello = down.number(Down::Hello);
-        down.offered(hello.sequence, 8);
-        assert_eq!(down.opening(), [Received { sequence: 1, message: Down::Open { nonce: 8 } }]);
-        assert_eq!(down.opening(), []);
-    }
-}

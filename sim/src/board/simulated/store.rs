@@ -1,5 +1,4 @@
-//! The host board's store: saves what the device wants kept, in as many ticks as the image takes, into a flash that is
-//! gone when the run is over.
+//! The host board's store: saves in as many ticks as the image takes, into a flash that is gone when the run is over.
 
 use tenax_hal_shim::flash::FlashFailed;
 use tenax_hal_shim::wire::{Event, EventKind, Up};

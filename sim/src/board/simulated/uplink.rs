@@ -1,8 +1,5 @@
-//! The host board's line up: what it posts, numbered and encoded as the image does it.
-//!
-//! What differs from the image's line: of the counters it has frames, ticks and what came down, since nothing is ever
-//! lost, late or dropped here; and within a slow frame the counters come at other instants, for the image's clock starts
-//! before its first scan.
+//! The host board's line up, numbered and encoded as the image does it. Its counters have frames, ticks and what came down alone, and
+//! come at other instants within a slow frame.
 
 use tenax_hal_shim::channel::FRAME_HZ;
 use tenax_hal_shim::wire::{Counters, Up};
@@ -14,15 +11,16 @@ const COUNTERS_FRAMES: u32 = FRAME_HZ / 10;
 
 pub struct Uplink<'a> {
     encoder: Encoder,
-    summary: &'a mut Summary,
-    recorder: &'a mut dyn Recorder,
+    pub summary: &'a mut Summary,
+    pub recorder: &'a mut dyn Recorder,
 }
 
 impl<'a> Uplink<'a> {
     pub fn new(summary: &'a mut Summary, recorder: &'a mut dyn Recorder) -> Self {
         let mut uplink = Self { encoder: Encoder::default(), summary, recorder };
         // The image ends whatever frame a reset may have cut short.
-        uplink.write(&[0]);
+        uplink.summary.line_bytes += 1;
+        uplink.recorder.line(&[0]);
         uplink.post(Up::Hello { frame_hz: FRAME_HZ as u16, after: None });
         uplink
     }
@@ -38,18 +36,5 @@ impl<'a> Uplink<'a> {
         if counters.frames > 0 && counters.frames.is_multiple_of(COUNTERS_FRAMES) {
             self.post(Up::Counters(counters));
         }
-    }
-
-    pub fn recorder(&mut self) -> &mut dyn Recorder {
-        self.recorder
-    }
-
-    pub fn summary(&mut self) -> &mut Summary {
-        self.summary
-    }
-
-    fn write(&mut self, bytes: &[u8]) {
-        self.summary.line_bytes += bytes.len();
-        self.recorder.line(bytes);
     }
 }

@@ -1,25 +1,32 @@
 //! Draws a sheet as SVG.
 
+use anyhow::anyhow;
+use plotters::coord::Shift;
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::{Axis, Cell, Mark, Panel, Series, Sheet};
-use crate::plot::draw::{Area, FONTS, INK, drawn, words};
 
 const WIDTH: u32 = 1_200;
 const PANEL_HEIGHT: u32 = 340;
+/// Of a panel that is as wide as the sheet.
+const WIDE_PANEL_HEIGHT: u32 = 230;
 const OWN_HEIGHT: i32 = 20;
 const TITLE_HEIGHT: u32 = 72;
 const FOOT_HEIGHT: u32 = 74;
 const MARGIN: i32 = 26;
+const FONTS: &str = "DejaVu Sans, Verdana, sans-serif";
+const INK: RGBColor = RGBColor(40, 40, 40);
 const FAILED: RGBColor = RGBColor(225, 225, 225);
 
+type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
 pub fn svg(sheet: &Sheet) -> anyhow::Result<String> {
     let rows = (sheet.panels.len() as u32).div_ceil(sheet.columns);
-    let height = TITLE_HEIGHT + rows * PANEL_HEIGHT + FOOT_HEIGHT;
+    let panel_height = if sheet.columns == 1 && rows > 1 { WIDE_PANEL_HEIGHT } else { PANEL_HEIGHT };
+    let height = TITLE_HEIGHT + rows * panel_height + FOOT_HEIGHT;
     let mut svg = String::new();
     {
         let root = SVGBackend::with_string(&mut svg, (WIDTH, height)).into_drawing_area();
@@ -27,7 +34,7 @@ pub fn svg(sheet: &Sheet) -> anyhow::Result<String> {
         words(&root, &sheet.title, (MARGIN, 12), 22, (HPos::Left, VPos::Top))?;
         words(&root, &sheet.subtitle, (MARGIN, 44), 14, (HPos::Left, VPos::Top))?;
         let (_, below) = root.split_vertically(TITLE_HEIGHT);
-        let (panels, foot) = below.split_vertically(rows * PANEL_HEIGHT);
+        let (panels, foot) = below.split_vertically(rows * panel_height);
         let areas = panels.split_evenly((rows as usize, sheet.columns as usize));
         let (common, own) = names(sheet);
         for ((panel, area), own) in sheet.panels.iter().zip(&areas).zip(&own) {
@@ -57,6 +64,10 @@ fn draw_panel(area: &Area, panel: &Panel, own: &[&Series], errors: Option<(f64, 
             .build_cartesian_2d(panel.x.places(), panel.y.places()),
     )?;
     words(area, &panel.title, (70, 12), 16, (HPos::Left, VPos::Top))?;
+    for band in &panel.bands {
+        let corners = [(band.x.0, band.y.0), (band.x.1, band.y.1)];
+        drawn(chart.draw_series([Rectangle::new(corners, band.colour.filled())]))?;
+    }
     for cell in &panel.cells {
         draw_cell(&mut chart, panel, cell, errors.unwrap_or((1e-6, 1.0)))?;
     }
@@ -110,7 +121,20 @@ fn draw_cell(chart: &mut Chart, panel: &Panel, cell: &Cell, errors: (f64, f64)) 
 }
 
 fn draw_series(chart: &mut Chart, panel: &Panel, series: &Series) -> anyhow::Result<()> {
-    let shown = series.points.iter().filter(|(x, y)| panel.x.shows(*x) && panel.y.shows(*y));
+    // A gap in a curve is a value that is no number: each stretch between gaps is a line of its own.
+    for stretch in series.points.split(|point| point.1.is_nan()) {
+        draw_stretch(chart, panel, series, stretch)?;
+    }
+    Ok(())
+}
+
+fn draw_stretch(
+    chart: &mut Chart,
+    panel: &Panel,
+    series: &Series,
+    points: &[(f64, f64)],
+) -> anyhow::Result<()> {
+    let shown = points.iter().filter(|(x, y)| panel.x.shows(*x) && panel.y.shows(*y));
     let points: Vec<(f64, f64)> = shown.map(|(x, y)| (panel.x.place(*x), panel.y.place(*y))).collect();
     let line = series.colour.stroke_width(2);
     let marks = points.iter().copied();
@@ -147,7 +171,6 @@ fn names(sheet: &Sheet) -> (Vec<&Series>, Vec<Vec<&Series>>) {
     (common, own)
 }
 
-/// Names of what is drawn, in rows from `(x, y)` on, each no wider than a width, in letters and rows of a height; how many rows.
 fn legend(
     area: &Area,
     named: &[&Series],
@@ -205,21 +228,29 @@ fn name(axis: &Axis, place: f64) -> String {
     if axis.log { power(place) } else { format!("{}", (place * 1e6).round() / 1e6 + 0.0) }
 }
 
-/// 10 to the power of `place`, as people write it.
+/// 10 to the power of `place`, where that is whole.
 fn power(place: f64) -> String {
-    const RAISED: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
     let whole = place.round();
-    if (place - whole).abs() > 1e-6 {
-        return String::new();
-    }
     match whole as i32 {
+        _ if (place - whole).abs() > 1e-6 => String::new(),
         0 => "1".to_owned(),
         1 => "10".to_owned(),
-        n => {
-            let sign = if n < 0 { "⁻" } else { "" };
-            let digits = n.abs().to_string();
-            let raised = digits.bytes().map(|digit| RAISED[usize::from(digit - b'0')]);
-            format!("10{sign}{}", raised.collect::<String>())
-        }
+        n => format!("1e{n}"),
     }
+}
+
+fn words(
+    area: &Area,
+    text: &str,
+    at: (i32, i32),
+    size: i32,
+    (side, height): (HPos, VPos),
+) -> anyhow::Result<()> {
+    let style = (FONTS, size).into_font().color(&INK).pos(Pos::new(side, height));
+    drawn(area.draw(&Text::new(text.to_owned(), at, style)))
+}
+
+/// plotters' error as ours; it does not go through `?` because it borrows.
+fn drawn<T, E: std::fmt::Display>(result: Result<T, E>) -> anyhow::Result<T> {
+    result.map_err(|error| anyhow!("the plot cannot be drawn: {error}"))
 }

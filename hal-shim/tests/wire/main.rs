@@ -1,16 +1,20 @@
 //! The wire under garbage, loss and cuts. A failing case prints its seed and is kept by proptest.
 
+mod golden;
+mod schema;
+
 use std::fmt::Debug;
 
+use postcard_schema::Schema;
 use proptest::collection::vec;
 use proptest::option;
 use proptest::prelude::*;
-use proptest::sample::Index;
+use proptest::sample::{Index, select};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use tenax_hal_shim::behaviour::Behaviour;
 use tenax_hal_shim::channel::{COUNT, PVDF_COUNT};
-use tenax_hal_shim::detector::{DetectorHealth, DetectorId, DetectorSet, Direction, Evidence};
+use tenax_hal_shim::detector::{DetectorId, DetectorSet, Evidence};
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::wire::{
@@ -20,32 +24,12 @@ use tenax_hal_shim::wire::{
 };
 use tenax_hal_shim::words::{Code, DriveSource, Fault, GripMode, Kept, Line, NoLesson};
 
-fn down() -> impl Strategy<Value = Down> {
-    prop_oneof![
-        Just(Down::Ping),
-        Just(Down::Zero),
-        Just(Down::Samples),
-        Just(Down::Network),
-        Just(Down::Save),
-        any::<u16>().prop_map(|age_ms| Down::Teach { codes: [Code::Minus, Code::Plus], age_ms }),
-        prop_oneof![Just(Behaviour::Stroke), Just(Behaviour::Hold)].prop_map(Down::Begin),
-        any::<(u8, i32)>().prop_map(|(id, value)| Down::Set(Setting { id, value })),
-        any::<u8>().prop_map(Down::Get),
-        any::<u8>().prop_map(Down::Settings),
-        (0..=1_000u16, any::<u16>()).prop_map(|(duty, hold_ms)| Down::Drive {
-            drive: MotorDrive::Open(Duty::per_mille(duty)),
-            hold_ms
-        }),
-    ]
-}
+use self::schema::messages;
 
-fn up() -> impl Strategy<Value = Up> {
-    prop_oneof![
-        any::<u32>().prop_map(|frames| Up::Counters(Counters { frames, ..Counters::default() })),
-        any::<(u16, u32)>().prop_map(|(of, frame)| Up::Answer { of, frame, answer: Answer::Done }),
-        Just(Up::Raw(Raw::default())),
-        Just(Up::Senses(Senses { frame: 24, samples: [8_191; COUNT], films: [40; PVDF_COUNT] })),
-    ]
+/// Messages of each kind.
+fn any_message<T: Schema + DeserializeOwned + Clone + Debug + 'static>() -> impl Strategy<Value = T> {
+    let bytes = messages(T::SCHEMA).into_iter();
+    select(bytes.map(|(_, bytes)| postcard::from_bytes(&bytes).expect("a message")).collect::<Vec<T>>())
 }
 
 fn answer(answer: Answer) -> Up {
@@ -126,8 +110,8 @@ proptest! {
     // Shows L5.
     #[test]
     fn bad_bytes_are_no_message_and_every_whole_frame_arrives(
-        to_the_board in vec((down(), damage()), 1..40),
-        from_the_board in vec((up(), damage()), 1..40),
+        to_the_board in vec((any_message::<Down>(), damage()), 1..40),
+        from_the_board in vec((any_message::<Up>(), damage()), 1..40),
     ) {
         arrives(to_the_board)?;
         arrives(from_the_board)?;
@@ -135,7 +119,7 @@ proptest! {
 
     // Shows L5.
     #[test]
-    fn one_wrong_bit_is_never_another_command(message in down(), at in any::<Index>(), bit in 0..8u8) {
+    fn one_wrong_bit_is_never_another_command(message in any_message::<Down>(), at in any::<Index>(), bit in 0..8u8) {
         for received in receive::<Down>(&damaged(frame(1, &message), Damage::Flip(at, bit))).into_iter().flatten() {
             prop_assert_eq!(received, (1, message));
         }
@@ -144,18 +128,14 @@ proptest! {
 
 #[test]
 fn another_version_is_named() {
-    let mut buffer = [0; FRAME_MAX];
-    // The same envelope as `encode` writes, with version 9 and a message that this version does not know.
-    let bytes = encode_as(9, &mut buffer);
-    assert_eq!(receive::<Down>(&bytes), [Err(BadFrame::Version(9))]);
-}
-
-fn encode_as(version: u8, buffer: &mut [u8]) -> Vec<u8> {
     use postcard::ser_flavors::{Cobs, Slice, crc::CrcModifier};
     let crc = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC);
-    let flavor = CrcModifier::new(Cobs::try_new(Slice::new(buffer)).unwrap(), crc.digest());
-    let message = (version, 3u16, 200u8, 200u8);
-    postcard::serialize_with_flavor::<_, _, &mut [u8]>(&message, flavor).unwrap().to_vec()
+    let mut buffer = [0; FRAME_MAX];
+    let flavor = CrcModifier::new(Cobs::try_new(Slice::new(&mut buffer)).unwrap(), crc.digest());
+    // The same envelope as `encode` writes, with version 9 and a message that this version does not know.
+    let message = (9_u8, 3_u16, 200_u8, 200_u8);
+    let bytes = postcard::serialize_with_flavor::<_, _, &mut [u8]>(&message, flavor).unwrap();
+    assert_eq!(receive::<Down>(bytes), [Err(BadFrame::Version(9))]);
 }
 
 #[test]
@@ -177,23 +157,14 @@ fn the_longest_message_fits_a_frame() {
         drive: MotorDrive::Close(Duty::FULL),
         source: DriveSource::Reflex,
     };
-    let longest_evidence = Evidence {
-        slip: true,
-        incipient: true,
+    let evidence = Evidence {
         confidence_permille: u16::MAX,
-        direction: Direction::Up,
         decided_at: u32::MAX,
-        health: DetectorHealth::Blind,
         raw: i32::MIN,
+        ..Evidence::default()
     };
-    let forces = Forces {
-        fn_mn: i32::MIN,
-        load_mn: i32::MIN,
-        fx_mn: i32::MIN,
-        fy_mn: i32::MIN,
-        ft_mn: i32::MIN,
-        ratio_permille: Some(u16::MAX),
-    };
+    let [fn_mn, load_mn, fx_mn, fy_mn, ft_mn] = [i32::MIN; 5];
+    let forces = Forces { fn_mn, load_mn, fx_mn, fy_mn, ft_mn, ratio_permille: Some(u16::MAX) };
     let slow = Slow {
         frame: u32::MAX,
         ticks: [longest; 25],
@@ -204,7 +175,7 @@ fn the_longest_message_fits_a_frame() {
         extensor_mv: Some(i16::MIN),
         wearer_active: true,
         lesson: Some([Code::Minus; 2]),
-        evidence: [(DetectorId::Injected, longest_evidence); DETECTORS_MAX].into_iter().collect(),
+        evidence: [(DetectorId::Injected, evidence); DETECTORS_MAX].into_iter().collect(),
         samples_sum: u32::MAX,
         line: Line::Armed { left_s: u8::MAX },
         behaviour: Some(Behaviour::Turn { by_ddeg: i16::MIN }),

@@ -58,14 +58,12 @@ fn fields(values: &[&NamedValue]) -> String {
 /// A variant's fields. Those of a message that is a type of its own are that type's.
 fn fields_of(variant: &NamedVariant) -> String {
     match variant.ty {
-        Variant::UnitVariant => "[]".to_owned(),
-        Variant::NewtypeVariant(NamedType { ty: Ty::Struct(values), .. }) => fields(values),
-        Variant::NewtypeVariant(inner) => format!("[{}]", field(None, inner)),
-        Variant::TupleVariant(all) => {
-            let all: Vec<String> = all.iter().map(|of| field(None, of)).collect();
+        Variant::NewtypeVariant(NamedType { ty: Ty::Struct(values), .. })
+        | Variant::StructVariant(values) => fields(values),
+        _ => {
+            let all: Vec<String> = types_of(variant).into_iter().map(|of| field(None, of)).collect();
             format!("[{}]", all.join(", "))
         }
-        Variant::StructVariant(values) => fields(values),
     }
 }
 
@@ -122,24 +120,15 @@ impl Types {
 /// The bytes of messages: one of each variant, and of each variant that a field of it may have. With each the variant's number.
 pub fn messages(of: &NamedType) -> Vec<(usize, Vec<u8>)> {
     let Ty::Enum(variants) = of.ty else { return Vec::new() };
-    let mut count = 0;
-    let all = variants.iter().enumerate().flat_map(|(number, variant)| {
-        of_variant(number, variant, &mut count)
-            .into_iter()
-            .map(move |bytes| (number, bytes))
-            .collect::<Vec<_>>()
-    });
-    all.collect()
+    let (mut count, mut all) = (0, Vec::new());
+    for (number, variant) in variants.iter().enumerate() {
+        all.extend(of_variant(number, variant, &mut count).into_iter().map(|bytes| (number, bytes)));
+    }
+    all
 }
 
-fn varint(mut value: u64) -> Vec<u8> {
-    let mut bytes = Vec::new();
-    while value >= 0x80 {
-        bytes.push(value as u8 | 0x80);
-        value >>= 7;
-    }
-    bytes.push(value as u8);
-    bytes
+fn varint(value: u64) -> Vec<u8> {
+    postcard::to_allocvec(&value).expect("a number")
 }
 
 fn of_variant(number: usize, variant: &NamedVariant, count: &mut u64) -> Vec<Vec<u8>> {

@@ -1,12 +1,38 @@
-//! The telemetry task: messages go up the serial line, as fast as it takes them.
+//! The tasks of the serial line: messages go up as fast as it takes them, commands come down to control.
 
 use core::mem::MaybeUninit;
 
 use static_cell::ConstStaticCell;
-use tenax_hal_shim::wire::{FRAME_MAX, Received, Up, encode};
+use tenax_hal_shim::wire::{BadFrame, Down, FRAME_MAX, Received, Receiver, Up, encode};
+use tenax_logic::allowance::Allowance;
 
 use crate::deadline::clock_us;
 use crate::{black_box, counts, line, mail};
+
+/// Hands commands to control. Anything else is counted and skipped, and so is what comes faster than an [`Allowance`], before its CRC
+/// is looked at.
+#[embassy_executor::task]
+pub async fn commands(mut line: line::Down) -> ! {
+    let mut receiver = Receiver::new();
+    let mut allowance = Allowance::default();
+    let mut bytes = [0; 64];
+    loop {
+        // The frame that lost bytes fails its CRC.
+        let Ok(count) = line.read(&mut bytes).await else {
+            counts::BAD_FRAMES.add_one();
+            continue;
+        };
+        for &byte in bytes.iter().take(count) {
+            match receiver.push_if::<Down>(byte, || allowance.admits(counts::last_frame())) {
+                None => {}
+                // Never waits: while it did, bytes that came would be lost in the middle of a frame.
+                Some(Ok(command)) if allowance.affords(&command.message) && mail::hand_over(command) => {}
+                Some(Ok(_) | Err(BadFrame::Skipped)) => counts::COMMANDS_SKIPPED.add_one(),
+                Some(Err(_)) => counts::BAD_FRAMES.add_one(),
+            }
+        }
+    }
+}
 
 static NEXT: ConstStaticCell<MaybeUninit<Received<Up>>> = ConstStaticCell::new(MaybeUninit::uninit());
 
@@ -35,7 +61,6 @@ pub async fn telemetry(mut line: line::Up) -> ! {
     }
 }
 
-/// Control's part of the core's time.
 struct Share {
     at_us: u32,
     control_us: u32,

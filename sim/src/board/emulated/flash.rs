@@ -1,24 +1,19 @@
-//! The flash as an array of words, which `rigless` leaves out of its model of the flash interface.
-//!
-//! The interface's registers are rigless's: keys, locks, the time of an erase. What a store into the array and the end of
-//! an erase do to the words is drawn here, and that the core stands still meanwhile, since it executes from the same bank
-//! (RM0383, section 3.5). The chip's memories are the F411's, not the F427's.
+//! The flash as an array of words, which `rigless` leaves out: what a store and the end of an erase do to them, with the core standing
+//! still meanwhile (RM0383, section 3.5). The chip's memories are the F411's, not the F427's.
 
-use std::collections::VecDeque;
 use std::iter::repeat_n;
 use std::num::{NonZeroU32, NonZeroU64};
 
 use rigless::device::{ErasedDevice, ResetCause};
 use rigless::emulator::{Access, AccessKind, Host, Stop};
-use rigless::mcu::{Mcu, Operate};
+use rigless::mcu::Mcu;
 use rigless::session::Session;
-use rigless::soc::stm32f427::CPU;
 use rigless::soc::stm32f427::generated::flash::Register;
+use rigless::soc::stm32f427::{CPU, Stm32f427};
 use rigless::soc::{Bus, EraseBlocks, Error, Region, Width};
 use rigless::time::VirtualNanos;
 
 use super::nucleo::Nucleo;
-use super::part::Part;
 
 const INTERFACE: &str = "FLASH";
 const FLASH_CR: u64 = 0x4002_3C10;
@@ -58,7 +53,7 @@ static MEMORY: [Region; 3] = [
 pub struct MemoryMap(Bus);
 
 impl MemoryMap {
-    pub fn new(mcu: &Part) -> Result<Self, Error> {
+    pub fn new(mcu: &Stm32f427) -> Result<Self, Error> {
         let peripherals: Vec<_> = mcu.bus().peripherals().copied().collect();
         Ok(Self(Bus::builder(CPU, &MEMORY, peripherals).build()?))
     }
@@ -90,7 +85,7 @@ pub struct FlashArray {
     word_ns: u64,
     pub words: u64,
     pub erases: u64,
-    power: VecDeque<u32>,
+    power: Option<u32>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -105,10 +100,9 @@ impl FlashArray {
         Self { word_ns, ..Self::default() }
     }
 
-    /// Has the power go while the word after the next `words` is programmed: half of its bits are. The words of a second cut are
-    /// counted from the first on.
+    /// Cuts the power while the word after the next `words` is programmed: half of its bits are.
     pub fn cut_power_after(&mut self, words: u32) {
-        self.power.push_back(words);
+        self.power = Some(words);
     }
 
     pub fn accessed(&mut self, access: &Access, session: &mut Session<Nucleo>, host: &mut dyn Host) {
@@ -118,9 +112,9 @@ impl FlashArray {
         if (BASE..BASE + SIZE).contains(&access.address) {
             self.store(access, session, host);
         } else if access.address == FLASH_CR {
-            let mcu = &mut session.board_mut().mcu;
-            let control = peek(mcu, access.virtual_time, FLASH_CR);
-            let busy = peek(mcu, access.virtual_time, FLASH_SR) & SR_BSY != 0;
+            let (board, now) = (session.board_mut(), access.virtual_time);
+            let control = board.peek(now, FLASH_CR);
+            let busy = board.peek(now, FLASH_SR) & SR_BSY != 0;
             if busy && control & CR_SER != 0 && self.doing.is_none() {
                 self.doing = Some(Doing::Erases { sector: control >> CR_SNB_SHIFT & CR_SNB });
                 host.hold(true);
@@ -129,19 +123,19 @@ impl FlashArray {
     }
 
     fn store(&mut self, access: &Access, session: &mut Session<Nucleo>, host: &mut dyn Host) {
-        let mcu = &mut session.board_mut().mcu;
-        let control = peek(mcu, access.virtual_time, FLASH_CR);
+        let board = session.board_mut();
+        let control = board.peek(access.virtual_time, FLASH_CR);
         let ready = control & (CR_PG | CR_LOCK | CR_SER) == CR_PG && control & CR_PSIZE == CR_PSIZE_WORD;
         if !ready || access.width != Width::W32 || !access.address.is_multiple_of(4) {
-            fail(mcu);
+            fail(&mut board.chip);
             return;
         }
         let old = host.read(access.address, Width::W32).unwrap_or(0);
         let mut programmed = old & access.value;
-        let cut = self.power.pop_front_if(|words| *words == 0).is_some();
+        let cut = self.power.take_if(|words| *words == 0).is_some();
         if cut {
             programmed |= old & 0xFFFF_0000;
-        } else if let Some(words) = self.power.front_mut() {
+        } else if let Some(words) = &mut self.power {
             *words -= 1;
         }
         let landed = host.program(access.address, Width::W32, programmed);
@@ -163,7 +157,7 @@ impl FlashArray {
             None => false,
             Some(Doing::Programs { until }) => stop.at >= until,
             Some(Doing::Erases { sector }) => {
-                let over = peek(&mut session.board_mut().mcu, stop.at, FLASH_SR) & SR_BSY == 0;
+                let over = session.board_mut().peek(stop.at, FLASH_SR) & SR_BSY == 0;
                 if over {
                     erase(sector, host);
                     self.erases += 1;
@@ -183,12 +177,8 @@ impl FlashArray {
     }
 }
 
-fn peek(mcu: &mut Part, now: VirtualNanos, address: u64) -> u64 {
-    mcu.peek(now, address, Width::W32).unwrap_or(0)
-}
-
-fn fail(mcu: &mut Part) {
-    let bus = mcu.bus_mut();
+fn fail(chip: &mut Stm32f427) {
+    let bus = chip.bus_mut();
     if let Some(slot) = bus.slot_of(INTERFACE) {
         let registers = bus.slot_mut(slot).registers_mut();
         let status = registers.get(Register::Sr);

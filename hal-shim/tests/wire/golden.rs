@@ -3,8 +3,6 @@
 //! A changed byte would let an older monitor read nonsense: the file is only written when [`VERSION`] is above its own. The test fails
 //! once after it has written, so that a person looks at the change.
 
-mod schema;
-
 use std::fmt::Debug;
 use std::fs;
 
@@ -19,7 +17,7 @@ use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::wire::{Down, FRAME_MAX, Raw, Receiver, SCHEMA, TickRecord, Up, VERSION, encode};
 use tenax_hal_shim::words::DriveSource;
 
-use self::schema::{Types, messages};
+use crate::schema::{Types, messages};
 
 const JSON: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../python/tenax/wire.json");
 
