@@ -10,6 +10,7 @@ use std::path::PathBuf;
 
 use anyhow::{Context, bail};
 use tenax_frames::link::Inbox;
+use tenax_logic::emg::model::EmgModel;
 use tenax_scene::plant::Plant;
 use tenax_scene::{SceneFile, World, builtin};
 
@@ -189,13 +190,14 @@ pub fn replay(
     board: &Board,
     progress: &mut dyn FnMut(f64),
 ) -> anyhow::Result<Outcome> {
-    replay_served(path, recipe, Use::default(), seed, board, &mut (), progress)
+    replay_served(path, (recipe, None), Use::default(), seed, board, &mut (), progress)
 }
 
-/// Plays a recording by a recipe, its name or file, or by the one that the recording's name calls for.
+/// Plays a recording by a recipe, its name or file, or by the one that the recording's name calls for; of a wearer whose calibration
+/// this is.
 pub fn replay_served(
     path: &Path,
-    recipe: Option<&str>,
+    (recipe, calibrated): (Option<&str>, Option<EmgModel>),
     line: Use,
     seed: u64,
     board: &Board,
@@ -203,13 +205,14 @@ pub fn replay_served(
     progress: &mut dyn FnMut(f64),
 ) -> anyhow::Result<Outcome> {
     let (recording, named) = library::read(path, recipe)?;
-    let plant = ReplayPlant::of(&recording, named.as_ref(), seed)?;
+    let mut plant = ReplayPlant::of(&recording, named.as_ref(), seed)?;
+    plant.calibrated = calibrated;
     let (zero_s, end_s) = (plant.time_zero_s(), plant.time_zero_s() + plant.duration_s());
     // Of the rows held before and after, as much as shows where the recording begins and ends.
     let margin_s = (0.05 * recording.duration_s()).max(0.02);
     let last_s = recording.first_s() + recording.duration_s();
     let span_s = (zero_s.max(recording.first_s() - margin_s), end_s.min(last_s + margin_s));
-    let mut witness = Witness::new(zero_s, span_s, None);
+    let mut witness = Witness::new(zero_s, span_s, calibrated.as_ref());
     let (run, _) = board.record(line.of(plant), &mut (&mut witness, recorder), progress)?;
     let scene = name_of(path);
     let (mut report, mut figure, timeline) = told(&scene, board.name(), seed, &run, witness, [None; 2]);

@@ -32,7 +32,7 @@ fn scene(name: &str, text: &str, seed: u64) -> Hash {
 
 fn replayed(path: &Path) -> Hash {
     let (mut run, line) = (Run::default(), Use::default());
-    let outcome = session::replay_served(path, None, line, 1, &Board::Host, &mut run, &mut |_| {});
+    let outcome = session::replay_served(path, (None, None), line, 1, &Board::Host, &mut run, &mut |_| {});
     run.summary = outcome.expect("the recording and its recipe are good").run;
     of_run(&run)
 }

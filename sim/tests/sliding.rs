@@ -27,7 +27,8 @@ fn the_rigs_sliding_is_heard_and_its_disturbance_is_not() {
     for seed in 1..=4 {
         let mut run = Run::default();
         let plain = Use::default();
-        session::replay_served(&file, None, plain, seed, &Board::Host, &mut run, &mut |_| {}).unwrap();
+        session::replay_served(&file, (None, None), plain, seed, &Board::Host, &mut run, &mut |_| {})
+            .unwrap();
         // By its threshold in millivolts alone: 7 %.
         let part = said_part(&run, &SLIDES_S);
         assert!(part > 0.6, "seed {seed}: {part}");

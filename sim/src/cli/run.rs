@@ -16,7 +16,7 @@ use crate::again;
 use crate::board::Recorder;
 use crate::live::{Live, Person, Use};
 use crate::plot::sheet::draw;
-use crate::replay;
+use crate::replay::{self, calibrate};
 use crate::report::text::Text;
 use crate::session::{self, Board};
 use tenax_frames::link::captured::is_recording;
@@ -61,6 +61,9 @@ pub struct Args {
     /// Recipe that maps the recording's columns to pins: a file, or a name in recipes/ [default: by the recording's name]
     #[arg(long, value_name = "FILE.toml|NAME", requires = "replay")]
     recipe: Option<String>,
+    /// First calibrate the myosensors with these three recordings [default: not calibrated]
+    #[arg(long, value_name = "REST.csv,CLOSE.csv,OPEN.csv", value_delimiter = ',', requires = "replay")]
+    calibrate_emg: Option<Vec<PathBuf>>,
     /// Also run the scene's controls on the PC: no reflex, a constant grip of the same mean force, each detector alone, all but
     /// one
     #[arg(long, conflicts_with = "replay")]
@@ -137,7 +140,9 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         Subject::Recording(file, recording) => {
             let progress = Progress::new("replay", recording.duration_s());
             let (recipe, seed) = (args.recipe.as_deref(), args.seed);
-            session::replay_served(file, recipe, line_use, seed, &board, recorder, &mut |s| progress.at(s))?
+            let calibrate = |recordings: &Vec<PathBuf>| calibrate::calibrate(recordings, recipe, seed);
+            let wearer = (recipe, args.calibrate_emg.as_ref().map(calibrate).transpose()?);
+            session::replay_served(file, wearer, line_use, seed, &board, recorder, &mut |s| progress.at(s))?
         }
         Subject::Scene(file) => {
             let progress = Progress::new(&format!("scene {}", file.name), file.duration_s());

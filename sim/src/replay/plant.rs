@@ -7,7 +7,8 @@ use rand_distr::{Distribution, Normal};
 use tenax_hal_shim::channel::{self, CHANNELS, FSR, SCAN_HZ};
 use tenax_hal_shim::front_end::{fsr_mv, fsr_quadrants_n};
 use tenax_hal_shim::motor::MotorDrive;
-use tenax_scene::plant::{Pins, Plant};
+use tenax_logic::emg::model::EmgModel;
+use tenax_scene::plant::{Calibrated, Pins, Plant};
 
 use super::filter::{Pass, pass};
 use super::recipe::{ForceMap, HoldForce, Map, RemoveOffset};
@@ -66,6 +67,7 @@ pub struct ReplayPlant {
     next: usize,
     rng: ChaCha8Rng,
     noise_v: Normal<f64>,
+    pub calibrated: Option<EmgModel>,
 }
 
 impl ReplayPlant {
@@ -145,6 +147,7 @@ impl ReplayPlant {
             next: 0,
             rng: ChaCha8Rng::seed_from_u64(seed),
             noise_v: Normal::new(0.0, PIN_NOISE_MV / 1e3).expect("a positive, finite deviation"),
+            calibrated: None,
         }
     }
 
@@ -248,6 +251,10 @@ impl Plant for ReplayPlant {
         }
         self.next += 1;
         &self.pins
+    }
+
+    fn calibrated(&self) -> Option<Calibrated> {
+        self.calibrated.map(|model| Calibrated::Words(model.to_words()))
     }
 
     fn duration_s(&self) -> f64 {
