@@ -25,13 +25,16 @@
 //! | [`picture`] | pictures of a camera behind a clear skin |
 //! | [`act`] | acts of a person at the bench |
 //! | [`bound`] | the least force that holds, planned ahead |
+//! | [`drawn`] | worlds drawn from stated distributions |
 //! | [`truth`] | a log of what happened |
 #![forbid(unsafe_code)]
 
 pub mod act;
 pub mod bound;
 pub mod builtin;
+mod causal;
 mod commands;
+pub mod drawn;
 pub mod file;
 pub mod physics;
 pub mod picture;

@@ -36,6 +36,8 @@ pub(crate) enum Source {
     HeadDay,
     Head,
     SkinMistakes,
+    Fsr,
+    Drawn,
 }
 
 #[derive(Debug)]

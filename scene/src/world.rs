@@ -9,6 +9,7 @@ use tenax_hal_shim::wire::Down;
 
 use crate::act::{Act, REACTS_S, Touches};
 use crate::bound::Plan;
+use crate::causal::{Causal, Known};
 use crate::commands::Script;
 use crate::file::SceneFile;
 use crate::file::sections::{Arm, Intent};
@@ -64,6 +65,7 @@ pub struct World {
     script: Script,
     trusts_line: bool,
     plan: Option<Plan>,
+    causal: Option<Causal>,
     pins: Pins,
     truth: Truth,
 }
@@ -105,7 +107,7 @@ impl World {
             touch: Touch::default(),
             films: Films::new(&scene.pvdf, (&scene.knock, &scene.hum), scene.contact.pitch_mm.get(), seeds),
             head: scene.photoelastic.as_ref().map(|head| Head::new(head, &scene.knock, seeds)),
-            quadrants: Quadrants::new(&scene.fsr),
+            quadrants: Quadrants::new(&scene.fsr, seed),
             envelopes: Envelopes::new(&scene.myo, &scene.electrode_lift, scene.pvdf.mains_hz.get(), seed),
             gauges: Gauges::new(&scene.strain, seeds),
             elements: Elements::new(scene, seed),
@@ -122,6 +124,7 @@ impl World {
             script: Script::new(&scene.command, scene.trusts_line()),
             trusts_line: scene.trusts_line(),
             plan: None,
+            causal: None,
             pins: Pins::default(),
             truth: Truth::default(),
         }
@@ -129,6 +132,12 @@ impl World {
 
     pub fn planning(mut self, plan: Option<Plan>) -> Self {
         self.plan = plan;
+        self
+    }
+
+    /// With a causal oracle in the place of a plan.
+    pub fn with_oracle(mut self) -> Self {
+        self.causal = Some(Causal::default());
         self
     }
 
@@ -249,6 +258,13 @@ impl Plant for World {
         self.released_n += self.touch.released_n;
         if (self.scans - 1).is_multiple_of(SCANS_PER_FRAME as u64) {
             self.slow(t_s, &effort);
+            if let (Some(causal), Task::Grasp { grasp, .. }) = (&mut self.causal, &self.task) {
+                causal.see(Known {
+                    needed_n: grasp.needed_n,
+                    stops_n: grasp.stops_n(),
+                    wearer_active: effort.intent.is_some(),
+                });
+            }
         }
         let Pins(pins_v) = &mut self.pins;
         *pins_v = self.slow_v;
@@ -309,6 +325,9 @@ impl Plant for World {
     }
 
     fn planned(&self) -> Option<MotorDrive> {
+        if let Some(causal) = &self.causal {
+            return self.closing_to(causal.target_n());
+        }
         let (Some(plan), Task::Grasp { grasp, .. }) = (&self.plan, &self.task) else { return None };
         self.closing_to(plan.target_n(self.now_s(), grasp.stops_n()))
     }

@@ -9,6 +9,7 @@ pub mod board;
 pub mod budgets;
 pub mod cli;
 pub mod disturbances;
+pub mod drawn;
 pub mod figure;
 pub mod image;
 pub mod input;

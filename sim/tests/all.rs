@@ -4,6 +4,7 @@ mod common;
 
 mod behaviours;
 mod cut_wires;
+mod drawn;
 mod failures;
 mod feedback;
 mod golden;

@@ -169,7 +169,10 @@ fn put_over<'a>(own: DeTable<'a>, base: &mut DeTable<'a>) {
                 put_over(own, &mut under);
                 DeValue::Table(under)
             }
-            (DeValue::Array(own), Some(DeValue::Array(mut all))) => {
+            // A list of numbers is one value.
+            (DeValue::Array(own), Some(DeValue::Array(mut all)))
+                if own.iter().chain(all.iter()).all(|entry| entry.get_ref().is_table()) =>
+            {
                 own.into_iter().for_each(|entry| all.push(entry));
                 DeValue::Array(all)
             }

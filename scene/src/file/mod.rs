@@ -123,7 +123,9 @@ impl SceneFile {
     pub fn lifts(&self) -> impl Iterator<Item = (usize, Range<f64>)> + '_ {
         self.electrode_lift.iter().map(|lift| {
             let at_s = lift.at_s.get();
-            (lift.channel.get_ref().index() - MYO_FLEXOR, at_s..at_s + lift.for_s.get())
+            // What it heard is smoothed: it falls for as long as an envelope rises, from 3 V in 0.1 s.
+            let settles_s = 1.7 * self.myo.rise_ms.get() / 1e3;
+            (lift.channel.get_ref().index() - MYO_FLEXOR, at_s..at_s + lift.for_s.get() + settles_s)
         })
     }
 

@@ -5,6 +5,7 @@ use std::num::NonZeroU8;
 
 use serde::Deserialize;
 use tenax_hal_shim::behaviour::Behaviour;
+use tenax_hal_shim::channel::FSR_COUNT;
 use tenax_logic::setting::SettingId;
 use toml::Spanned;
 
@@ -193,6 +194,12 @@ pub struct Fsr {
     pub hysteresis: Part,
     pub creep: Part,
     pub creep_s: Duration,
+    /// Gains of quadrants A to D.
+    pub gains: [Gain; FSR_COUNT],
+    /// Where the load lies beside the pad's middle, along the shear and across it.
+    pub aside_mm: [Lever; 2],
+    /// Noise of a reading, rms, as a part of it.
+    pub noise: Part,
 }
 
 #[derive(Clone, Debug, Deserialize)]

@@ -3,11 +3,13 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use crate::drawn;
 use crate::sweep::{self, Seeds, Shard};
 use tenax_frames::tool::folder;
 use tenax_frames::tool::format::Format;
 use tenax_frames::tool::out;
 use tenax_frames::tool::progress::with_bar;
+use tenax_scene::drawn::{Family, nth};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -19,7 +21,10 @@ Examples:
                                            as a job of an array; in Kubernetes
                                            $((JOB_COMPLETION_INDEX + 1))/16
   tenax sweep merge DIR                    runs.jsonl, summary.json and the summary of all shards:
-                                           the same bytes, however many there were";
+                                           the same bytes, however many there were
+  tenax sweep --drawn 200 --seed 7         worlds that nobody chose, beside a causal oracle, by family
+  tenax sweep --family splash --seed 7 --print 3
+                                           one of them as a scene file";
 
 /// Run scenes with many seeds on the host's build of the logic: bound, force and fate of each.
 #[derive(Debug, clap::Args)]
@@ -36,6 +41,18 @@ pub struct Args {
     /// Run only this shard, such as 3/16, without a merge [default: all shards, then a merge]
     #[arg(long, value_name = "N/OF")]
     shard: Option<Shard>,
+    /// Run so many drawn worlds instead, all families in turn
+    #[arg(long, value_name = "N", conflicts_with_all = ["scenes", "seeds", "shard", "out"])]
+    drawn: Option<u32>,
+    /// What drawn worlds are drawn from: 1 to 999 are for choosing, others for scoring
+    #[arg(long, value_name = "S", default_value_t = 1)]
+    seed: u64,
+    /// Only drawn worlds of this family
+    #[arg(long, value_name = "NAME")]
+    family: Option<Family>,
+    /// Print this drawn world as a scene file instead, from 0
+    #[arg(long, value_name = "K", conflicts_with = "drawn")]
+    print: Option<u32>,
     /// Folder with one file a run; existing runs are not repeated
     #[arg(long, value_name = "DIR", default_value = "out/sweep")]
     out: PathBuf,
@@ -54,6 +71,15 @@ enum What {
 }
 
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
+    if let Some(n) = args.print {
+        out::unless_closed(out::print(format_args!("{}", nth(args.family, args.seed, n).text)))?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    if let Some(count) = args.drawn {
+        let scores = with_bar("worlds", |told| drawn::scores(args.family, args.seed, count, told))?;
+        out::unless_closed(args.report.show(&drawn::Report::new(args.seed, &scores)?))?;
+        return Ok(ExitCode::SUCCESS);
+    }
     let summary = if let Some(What::Merge { folders }) = &args.what {
         sweep::merge(folders)?
     } else {

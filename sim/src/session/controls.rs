@@ -63,6 +63,11 @@ pub fn bound(file: &SceneFile, seed: u64, run: &Fate) -> Fate {
     best
 }
 
+/// A causal oracle in the hand's place: [`tenax_scene::World::with_oracle`].
+pub fn oracle(file: &SceneFile, seed: u64) -> Fate {
+    fate(file, World::new(file, seed).with_oracle(), Grips::Bound)
+}
+
 pub fn runs(file: &SceneFile, seed: u64, truth: &Fate) -> Vec<(String, Fate)> {
     let each = || {
         DetectorId::ALL.into_iter().filter(|&id| match id {
