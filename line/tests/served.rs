@@ -65,7 +65,7 @@ fn all_heard(client: &Client) {
     assert_eq!((missed, bad_frames), (0, 0));
 }
 
-/// Sets S1, reads it back, and listens for half a second: everything comes, in order.
+/// Sets S1, reads it back, and listens to more than ten slow frames, as long as a busy machine takes: everything comes, in order.
 fn set_and_read_back(target: &Target, mv: i32) {
     let mut client = Client::open(target).unwrap();
     let setting = |value| Setting { id: SettingId::S1.number(), value };
@@ -79,7 +79,10 @@ fn set_and_read_back(target: &Target, mv: i32) {
     assert!(settings.contains(&setting(mv)));
     let refused = ask(Down::Set(setting(-1)));
     assert!(matches!(refused, Answer::Refused(Refusal::OutOfRange { .. })), "{refused:?}");
-    assert!(listen(&mut client, Duration::from_millis(500)).len() > 10);
+    let mut heard = 0;
+    while heard <= 10 {
+        heard += listen(&mut client, Duration::from_millis(500)).len();
+    }
     all_heard(&client);
 }
 
@@ -88,7 +91,7 @@ fn a_setting_is_set_and_read_back_on_a_pty_on_its_symlink_and_on_tcp() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path().join("board");
     let options = Options { at: Some(at.clone()), ..Options::default() };
-    let (run, tally) = serve(options, 6.0, |places| {
+    let (run, tally) = serve(options, 12.0, |places| {
         assert_eq!(places.len(), 3);
         for (target, mv) in places.iter().zip([120, 130, 140]) {
             set_and_read_back(target, mv);
