@@ -14,6 +14,8 @@ const BEFORE: usize = 5;
 const LEAST_HEARD: i32 = 123;
 /// Slow frames from the begin of a wish in which the other electrode has to rise: 1.5 s.
 const HEARD_FRAMES: u16 = 120;
+/// Slow frames from the begin of a wish in which the other electrode rises at once: 38 ms.
+const AT_ONCE_FRAMES: u16 = 3;
 /// Slow frames in a row that make a rise: one is a glitch.
 const HEARD_FOR: u8 = 2;
 /// Gradual rise: at most [`MOST_IN_BLOCK`] of it in a block, per mille, and at least [`PART_OF_BLOCK`] in [`BLOCKS_OF_RISE`] blocks.
@@ -91,6 +93,8 @@ pub struct Proof {
     before: [i32; 2],
     hears: u8,
     heard: bool,
+    /// The other electrode rose by twice its least rise within [`AT_ONCE_FRAMES`] of the wish's begin.
+    pub at_once: bool,
     apart: bool,
     proven: bool,
     over: u16,
@@ -121,9 +125,10 @@ impl Proof {
         let over = levels[mover & 1].is_some_and(|level| level >= const { level_of(OVER_UV) });
         self.over = if over { self.over.saturating_add(1) } else { 0 };
         self.age = self.age.saturating_add(1);
-        let heard = hears.map(|[rest, rise]| {
-            self.rise(1 - mover, levels[(1 - mover) & 1], rest)
-                >= rise.max(LEAST_HEARD) * (1 + i32::from(self.wary))
+        let heard = hears.map(|[rest, least]| {
+            let (rise, least) = (self.rise(1 - mover, levels[(1 - mover) & 1], rest), least.max(LEAST_HEARD));
+            self.at_once |= self.age <= AT_ONCE_FRAMES && rise >= 2 * least;
+            rise >= least * (1 + i32::from(self.wary))
         });
         self.hears = if heard == Some(true) { self.hears.saturating_add(1) } else { 0 };
         self.heard |= self.age <= HEARD_FRAMES && self.hears >= HEARD_FOR;
@@ -193,7 +198,7 @@ impl Proof {
         // Not for rest, which is never proven.
         self.heard = wish == self.last.0 && self.last.1 < GOES_ON_FRAMES;
         self.apart = self.heard;
-        self.proven = false;
+        (self.at_once, self.proven) = (false, false);
     }
 
     pub fn levels(&self) -> Point {
