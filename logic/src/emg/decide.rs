@@ -14,6 +14,8 @@ const STRONG: i32 = 1_000;
 const ALONE: i32 = 900;
 const CALM_FRAMES: u16 = 40;
 const HUM_FRAMES: i32 = 21;
+/// Hum falls by at most this part of its level.
+const HUM_PART: i32 = 16;
 const MOST_DRIFT_UV: i32 = 1_500_000;
 const ACTIVE: [i32; 2] = [350, 250];
 const ACTIVE_UV: [i32; 2] = [159_000, 112_000];
@@ -123,8 +125,9 @@ struct Machine {
     mean: [i32; 3],
     crest: i32,
     trough: [i32; 2],
-    /// Offset of rest, uV, Q8.
+    /// Offset of rest, uV, Q8, and whether constant hum set it.
     drift: [i32; 2],
+    hummed: [bool; 2],
 }
 
 impl Decide {
@@ -185,6 +188,7 @@ impl Machine {
             crest: 0,
             trough: [0; 2],
             drift: [0; 2],
+            hummed: [false; 2],
         }
     }
 
@@ -303,16 +307,20 @@ impl Machine {
             && self.mean[0] < 16 * f.ends[0]
             && self.mean[1] < 16 * f.ends[1];
         self.calm = if calm { self.calm.saturating_add(1) } else { 0 };
-        for (n, Electrode { uv, hums, .. }) in electrodes.into_iter().enumerate() {
-            let Some(uv) = uv.filter(|_| self.calm >= CALM_FRAMES || hums) else { continue };
-            let added = (uv - sites.rest_uv[n]).min(MOST_DRIFT_UV) * 256;
-            self.drift[n] += (added - self.drift[n]) / if hums { HUM_FRAMES } else { f.rest_frames.max(1) };
-        }
-        // What was added is no more than what is there.
-        for (n, Electrode { uv, .. }) in electrodes.into_iter().enumerate() {
+        for (n, Electrode { uv, hums, doubted, .. }) in electrodes.into_iter().enumerate() {
             let Some(uv) = uv else { continue };
             let added = (uv - sites.rest_uv[n]).min(MOST_DRIFT_UV) * 256;
-            if added < self.drift[n] && self.drift[n] > 0 {
+            if hums {
+                self.drift[n] += (added - self.drift[n]) / HUM_FRAMES;
+                self.hummed[n] = true;
+            } else if self.calm >= CALM_FRAMES && !doubted {
+                self.drift[n] += (added - self.drift[n]) / f.rest_frames.max(1);
+            }
+            // What was added is no more than what is there; hum is constant, so what falls below it is none.
+            let below = self.drift[n] - added;
+            if self.hummed[n] && below > self.drift[n] / HUM_PART {
+                (self.drift[n], self.hummed[n]) = (0, false);
+            } else if below > 0 && self.drift[n] > 0 {
                 self.drift[n] += (added.max(0) - self.drift[n]) / 8;
             }
         }
