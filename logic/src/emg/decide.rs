@@ -5,6 +5,7 @@ use super::constants::Fitted;
 use super::fitted::FITTED;
 use super::level::{FLOOR_LEVEL, level_of, uv_of};
 use super::model::EmgModel;
+use super::trust::HUM_PART;
 
 /// Top of the sensor's range, uV: above, no motion starts, but one that has started goes on.
 pub const OVER_UV: i32 = 2_950_000;
@@ -14,8 +15,6 @@ const STRONG: i32 = 1_000;
 const ALONE: i32 = 900;
 const CALM_FRAMES: u16 = 40;
 const HUM_FRAMES: i32 = 21;
-/// Hum falls by at most this part of its level.
-const HUM_PART: i32 = 16;
 const MOST_DRIFT_UV: i32 = 1_500_000;
 const ACTIVE: [i32; 2] = [350, 250];
 const ACTIVE_UV: [i32; 2] = [159_000, 112_000];
@@ -125,9 +124,10 @@ struct Machine {
     mean: [i32; 3],
     crest: i32,
     trough: [i32; 2],
-    /// Offset of rest, uV, Q8, and whether constant hum set it.
+    /// Offset of rest, uV, Q8.
     drift: [i32; 2],
-    hummed: [bool; 2],
+    /// Envelope of the hum that is part of it, uV; 0 without hum.
+    hum_uv: [i32; 2],
 }
 
 impl Decide {
@@ -188,7 +188,7 @@ impl Machine {
             crest: 0,
             trough: [0; 2],
             drift: [0; 2],
-            hummed: [false; 2],
+            hum_uv: [0; 2],
         }
     }
 
@@ -307,20 +307,20 @@ impl Machine {
             && self.mean[0] < 16 * f.ends[0]
             && self.mean[1] < 16 * f.ends[1];
         self.calm = if calm { self.calm.saturating_add(1) } else { 0 };
-        for (n, Electrode { uv, hums, doubted, .. }) in electrodes.into_iter().enumerate() {
+        for (n, Electrode { uv, hums, .. }) in electrodes.into_iter().enumerate() {
             let Some(uv) = uv else { continue };
             let added = (uv - sites.rest_uv[n]).min(MOST_DRIFT_UV) * 256;
             if hums {
-                self.drift[n] += (added - self.drift[n]) / HUM_FRAMES;
-                self.hummed[n] = true;
-            } else if self.calm >= CALM_FRAMES && !doubted {
-                self.drift[n] += (added - self.drift[n]) / f.rest_frames.max(1);
+                self.hum_uv[n] = uv;
+            }
+            if self.calm >= CALM_FRAMES || hums {
+                let frames = if hums { HUM_FRAMES } else { f.rest_frames.max(1) };
+                self.drift[n] += (added - self.drift[n]) / frames;
             }
             // What was added is no more than what is there; hum is constant, so what falls below it is none.
-            let below = self.drift[n] - added;
-            if self.hummed[n] && below > self.drift[n] / HUM_PART {
-                (self.drift[n], self.hummed[n]) = (0, false);
-            } else if below > 0 && self.drift[n] > 0 {
+            if uv < self.hum_uv[n] - self.hum_uv[n] / HUM_PART {
+                (self.drift[n], self.hum_uv[n]) = (0, 0);
+            } else if added < self.drift[n] && self.drift[n] > 0 {
                 self.drift[n] += (added.max(0) - self.drift[n]) / 8;
             }
         }
