@@ -415,7 +415,10 @@ impl Seen {
         if walk.electrodes_fail {
             self.judge_opening(walk, step, drive);
         } else if drive.opens() {
-            let asked = walk.muscles[1].last_mv >= Some(OPENS_MV) || step < walk.link_open_until || lets_go;
+            // A contraction that leaves the sensor's range goes on (docs/emg.md).
+            let mv = walk.muscles[1].last_mv;
+            let contracts = mv >= Some(OPENS_MV) || mv.is_none() && self.asked_at == Some(step);
+            let asked = contracts || step < walk.link_open_until || lets_go;
             assert!(asked, "step {step}: opened, and nobody asked");
         }
         if let Some(slow) = walk.bench.slows.pop() {

@@ -138,17 +138,14 @@ mod tests {
     fn says(wish: Wish, strength_permille: u16) -> Gate {
         let mut gate = Gate::default();
         let active = wish != Wish::Rest;
-        gate.take(Verdict {
-            wish,
-            strength_permille,
-            proven: active,
-            active,
-            known: true,
-            half_known: true,
-            ..Verdict::default()
-        });
+        let verdict = Verdict { wish, strength_permille, proven: active, active, ..Verdict::default() };
+        gate.take(Verdict { known: true, half_known: true, ..verdict });
         gate.tick(&CONFIG, false);
         gate
+    }
+
+    fn wishes(gate: &Gate) -> MotorDrive {
+        gate.wish(&CONFIG, &Account::default())
     }
 
     #[test]
@@ -158,26 +155,17 @@ mod tests {
 
     #[test]
     fn each_wish_has_its_direction_and_the_duty_follows_its_strength() {
-        assert_eq!(says(Wish::Rest, 0).wish(&CONFIG, &Account::default()), MotorDrive::Coast);
-        assert_eq!(
-            says(Wish::Close, 1_000).wish(&CONFIG, &Account::default()),
-            MotorDrive::Close(Duty::FULL)
-        );
-        assert_eq!(
-            says(Wish::Open, 0).wish(&CONFIG, &Account::default()),
-            MotorDrive::Open(Duty::per_mille(300))
-        );
-        assert_eq!(
-            says(Wish::Close, 500).wish(&CONFIG, &Account::default()),
-            MotorDrive::Close(Duty::per_mille(475))
-        );
+        assert_eq!(wishes(&says(Wish::Rest, 0)), MotorDrive::Coast);
+        assert_eq!(wishes(&says(Wish::Close, 1_000)), MotorDrive::Close(Duty::FULL));
+        assert_eq!(wishes(&says(Wish::Open, 0)), MotorDrive::Open(Duty::per_mille(300)));
+        assert_eq!(wishes(&says(Wish::Close, 500)), MotorDrive::Close(Duty::per_mille(475)));
     }
 
     #[test]
     fn activity_is_held() {
         let mut gate = says(Wish::Open, 100);
         gate.take(Verdict { known: true, half_known: true, ..Verdict::default() });
-        assert_eq!(gate.wish(&CONFIG, &Account::default()), MotorDrive::Coast);
+        assert_eq!(wishes(&gate), MotorDrive::Coast);
         for _ in 0..399 {
             gate.tick(&CONFIG, false);
             assert!(gate.is_active());
@@ -212,7 +200,7 @@ mod tests {
             gate.tick(&CONFIG, empty);
             let mut frames = 0;
             while gate.is_releasing() && frames <= RELEASE_FRAMES {
-                assert_eq!(gate.wish(&CONFIG, &Account::default()), slowly);
+                assert_eq!(wishes(&gate), slowly);
                 gate.tick(&CONFIG, empty);
                 assert!(gate.is_active(), "the reflex is silent");
                 gate.step_release(1);
@@ -221,7 +209,7 @@ mod tests {
             frames
         };
         assert_eq!((lasts(false), lasts(true)), (RELEASE_FRAMES, RELEASED_FRAMES + 1));
-        assert_eq!(gate.wish(&CONFIG, &Account::default()), MotorDrive::Coast);
+        assert_eq!(wishes(&gate), MotorDrive::Coast);
 
         let closes = Verdict { wish: Wish::Close, active: true, known: true, ..Verdict::default() };
         for (verdict, goes_on) in [(closes, true), (Verdict { proven: true, ..closes }, false)] {
