@@ -283,7 +283,7 @@ impl Walk {
             };
         }
         if let Some(film) = self.humming {
-            self.bench.hum(PVDF + film, 200.0);
+            self.bench.hum(PVDF + film, 80.0, 200.0);
         }
     }
 

@@ -285,9 +285,11 @@ impl Senses {
     /// Steady sliding, cut wires and select lines. Call it once a slow frame, always after the same tick.
     #[inline(never)]
     pub fn think(&mut self, config: &Config, samples: &LastSamples, journal: &mut Journal) {
-        // A muscle's spectrum, twice in 64 cycles, leaves no time for the quadrants.
+        // A muscle's spectrum, twice in 64 cycles, leaves no time for the quadrants and the films' noise.
         if !self.muscles().has_window() {
             self.blame(config, journal);
+            let (empty, still) = (self.unloaded, self.still_frames > frames(100));
+            self.detector.learn_noise(&config.vibration, empty, still);
         }
         self.select_lines.look(&samples.switch_b);
         self.films.slow(|film, change| report(journal, PVDF + film, Some(change)));
