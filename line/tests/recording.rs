@@ -16,13 +16,13 @@ use tenax_sim::session::{Board, load_scene};
 use crate::serving::{BENCH, Serving, command, tenax, trusting};
 
 pub fn line(scene: &str, streams_at_start: bool) -> Vec<u8> {
-    let plant = Use { live: None, streams_at_start }.of(World::new(&load_scene(scene).unwrap(), 1));
+    let plant = Use { streams_at_start, ..Use::default() }.of(World::new(&load_scene(scene).unwrap(), 1));
     Board::Host.run(plant, &mut |_| {}).unwrap().0.line
 }
 
 pub fn record(path: &Path, line: &[u8]) {
     let mut recording = Recording::create(path).unwrap();
-    recording.line(line);
+    recording.line(line).unwrap();
     recording.finish().unwrap();
 }
 
@@ -70,7 +70,7 @@ with open(sys.argv[1], 'rb') as file:
         if channel.topic == '/line':
             continue
         row = next(rows.setdefault(path, csv.DictReader(open(path))))
-        for name, text in list(row.items())[1:]:
+        for name, text in list(row.items())[3:]:
             stem, _, place = name.rpartition('_')
             value = getattr(message, name) if hasattr(message, name) else getattr(message, stem)[int(place) - 1]
             same = text == value if isinstance(value, str) else float(text) == value or math.isnan(value) and text == 'NaN'

@@ -1,6 +1,7 @@
 //! What a plant is put into while its board's line is served: real time goes by, and clients' bytes come down.
 
 use std::collections::VecDeque;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -111,11 +112,13 @@ impl Pace {
 pub struct Use {
     pub live: Option<Live>,
     pub streams_at_start: bool,
+    /// Ends the run before its time.
+    pub stop: Arc<AtomicBool>,
 }
 
 impl Use {
     pub fn of<P>(self, plant: P) -> Served<P> {
-        Served { plant, live: self.live, streams_at_start: self.streams_at_start }
+        Served { plant, live: self.live, streams_at_start: self.streams_at_start, stop: self.stop }
     }
 }
 
@@ -124,6 +127,7 @@ pub struct Served<P> {
     /// None: as fast as it goes, and nobody sends anything.
     pub live: Option<Live>,
     pub streams_at_start: bool,
+    pub stop: Arc<AtomicBool>,
 }
 
 impl<P: Plant> Plant for Served<P> {
@@ -170,7 +174,7 @@ impl<P: Plant> Plant for Served<P> {
     }
 
     fn resets(&self) -> bool {
-        self.live.as_ref().is_some_and(|live| live.person.hands().resets)
+        self.stop.load(Relaxed) || self.live.as_ref().is_some_and(|live| live.person.hands().resets)
     }
 
     fn streams_at_start(&self) -> bool {

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use tenax_frames::link::captured::line_of;
+use tenax_frames::link::Captured;
 use tenax_frames::record::csv;
 use tenax_frames::tool::out;
 
@@ -24,7 +24,7 @@ pub struct Args {
 }
 
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
-    for path in csv::export(&line_of(&args.file)?, &args.csv)? {
+    for path in csv::export(&Captured::open(&args.file)?, &args.csv)? {
         out::note!("  {:<14}{}", "written", path.display());
     }
     Ok(ExitCode::SUCCESS)
