@@ -11,6 +11,7 @@ use std::thread;
 
 use anyhow::Context;
 use clap::ArgGroup;
+use tenax_hal_shim::channel;
 use tenax_scene::act::KEYS;
 use tenax_scene::{SceneFile, builtin};
 
@@ -37,6 +38,7 @@ Examples:
   tenax run --host --controls               beside no reflex, a constant grip and each detector alone
   tenax run --replay touch.csv              a recording, with the recipe that its name calls for
   tenax run --replay my.csv --recipe my.toml
+  tenax run --replay my.csv --explain       what its columns and times are taken for
   tenax run --report json > report.json     for programs
   tenax run --serve                         at real time, with its serial line on a pseudo-terminal
   tenax run --host --serve-tcp 7777         on TCP port 7777 of this machine only
@@ -62,6 +64,9 @@ pub struct Args {
     /// Recipe that maps the recording's columns to pins: a file, or a name in recipes/ [default: by the recording's name]
     #[arg(long, value_name = "FILE.toml|NAME", requires = "replay")]
     recipe: Option<String>,
+    /// Print what the recording's columns, times and first rows are taken for, and end
+    #[arg(long, requires = "replay")]
+    explain: bool,
     /// First calibrate the myosensors with these three recordings [default: not calibrated]
     #[arg(long, value_name = "REST.csv,CLOSE.csv,OPEN.csv", value_delimiter = ',', requires = "replay")]
     calibrate_emg: Option<Vec<PathBuf>>,
@@ -106,6 +111,15 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         let outcome = again::replay(recording)?;
         out::say!("{outcome}")?;
         return Ok(ExitCode::from(u8::from(outcome.difference.is_some())));
+    }
+    if let (true, Some(path)) = (args.explain, &args.replay) {
+        let (recording, named) = replay::library::read(path, args.recipe.as_deref())?;
+        let goes_to = |column: &str| match &named {
+            Some(named) => named.recipe.goes_to(column),
+            None => channel::by_name(column).map_or(String::new(), |_| column.to_owned()),
+        };
+        out::print(format_args!("{}", recording.explained(&goes_to)))?;
+        return Ok(ExitCode::SUCCESS);
     }
     let folder = folder::made(&args.out)?;
     // What is to be run is looked at before the image is built, which can take minutes.
