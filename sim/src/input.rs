@@ -109,7 +109,7 @@ impl Table {
         }
     }
 
-    /// Why columns may not be found: what a recipe can say instead. Empty where nothing is conspicuous.
+    /// Why columns may not be found: what a recipe can say instead.
     pub fn hint(&self, columns: &[String]) -> String {
         let all = columns.join(&self.delimiter.to_string());
         let other = [';', '\t', ','].into_iter().find(|sign| *sign != self.delimiter && all.contains(*sign));

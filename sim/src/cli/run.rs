@@ -39,6 +39,7 @@ Examples:
   tenax run --replay touch.csv              a recording, with the recipe that its name calls for
   tenax run --replay my.csv --recipe my.toml
   tenax run --replay my.csv --explain       what its columns and times are taken for
+  tenax run --replay my.csv --suggest-recipe > my.toml
   tenax run --report json > report.json     for programs
   tenax run --serve                         at real time, with its serial line on a pseudo-terminal
   tenax run --host --serve-tcp 7777         on TCP port 7777 of this machine only
@@ -67,6 +68,9 @@ pub struct Args {
     /// Print what the recording's columns, times and first rows are taken for, and end
     #[arg(long, requires = "replay")]
     explain: bool,
+    /// Print a recipe to begin with, by how the recording's table looks, and end
+    #[arg(long, requires = "replay", conflicts_with_all = ["recipe", "explain"])]
+    suggest_recipe: bool,
     /// First calibrate the myosensors with these three recordings [default: not calibrated]
     #[arg(long, value_name = "REST.csv,CLOSE.csv,OPEN.csv", value_delimiter = ',', requires = "replay")]
     calibrate_emg: Option<Vec<PathBuf>>,
@@ -111,6 +115,10 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         let outcome = again::replay(recording)?;
         out::say!("{outcome}")?;
         return Ok(ExitCode::from(u8::from(outcome.difference.is_some())));
+    }
+    if let (true, Some(path)) = (args.suggest_recipe, &args.replay) {
+        out::print(format_args!("{}", replay::suggest::suggest(path)?))?;
+        return Ok(ExitCode::SUCCESS);
     }
     if let (true, Some(path)) = (args.explain, &args.replay) {
         let (recording, named) = replay::library::read(path, args.recipe.as_deref())?;

@@ -45,6 +45,12 @@ pub struct Time {
     pub rate_hz: Option<Spanned<f64>>,
 }
 
+impl Time {
+    pub fn of_rate(hz: f64) -> Self {
+        Self { rate_hz: Some(Spanned::new(0..0, hz)), ..Self::default() }
+    }
+}
+
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
 pub enum TimeUnit {
     #[default]
