@@ -13,7 +13,7 @@ use tenax_frames::link::{Client, Inbox};
 use tenax_hal_shim::channel::FRAME_HZ;
 use tenax_hal_shim::wire::Up;
 
-use crate::serving::{command, trusting};
+use crate::serving::{BENCH, Serving, command, tenax, trusting};
 
 fn record(place: &str, path: &Path, more: &[&str]) -> Child {
     let args = [&["record", "--port", place, "--out", path.to_str().unwrap()], more].concat();
@@ -125,6 +125,32 @@ fn signals_a_full_disk_and_a_lines_end_leave_whole_files_and_are_told() {
     let said = String::from_utf8_lossy(&done.stderr);
     assert!(done.status.code() == Some(2) && said.contains("the line ended after "), "{said}");
     assert!(std::fs::read(at("end")).unwrap().ends_with(mcap_end()) && last_frame(&at("end")) > 0);
+}
+
+#[test]
+fn time_goes_on_where_the_board_is_reset() {
+    let (served, folder) = (Serving::start(BENCH), tempfile::tempdir().unwrap());
+    let path = folder.path().join("reset.mcap");
+    let mut child = record(&served.place, &path, &["--seconds", "5"]);
+    thread::sleep(Duration::from_millis(2_500));
+    served.tell("reset");
+    assert!(child.wait().unwrap().success());
+    served.end();
+    let csv = folder.path().join("csv");
+    assert!(tenax(&["play", path.to_str().unwrap(), "--csv", csv.to_str().unwrap()]).0);
+    let events = std::fs::read_to_string(csv.join("event.csv")).unwrap();
+    assert!(events.contains("hello: "), "the restart is an event: {events}");
+    for topic in ["state", "tick", "frame", "counters"] {
+        let text = std::fs::read_to_string(csv.join(topic).with_extension("csv")).unwrap();
+        let times =
+            |row: &str| -> Vec<f64> { row.split(',').take(3).map(|cell| cell.parse().unwrap()).collect() };
+        let rows: Vec<Vec<f64>> = text.lines().skip(1).map(times).collect();
+        let back = |n: usize| rows.windows(2).filter(|pair| pair[1][n] < pair[0][n]).count();
+        assert_eq!((back(0), back(1), back(2)), (0, 1, 0), "{topic}: file, board and host");
+        // The crystal of a served board is this computer's clock.
+        let (first, last) = (&rows[0], &rows[rows.len() - 1]);
+        assert!(((last[0] - first[0]) - (last[2] - first[2])).abs() < 0.5, "{topic}: {first:?} {last:?}");
+    }
 }
 
 /// The MCAP format's magic bytes end a whole file.
