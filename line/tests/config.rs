@@ -1,5 +1,7 @@
 //! `tenax config` against a served board: every setting is set, read back, exported, imported and reset.
 
+use std::io::{self, Read, Write};
+use std::net::{Shutdown, TcpListener, TcpStream};
 use std::thread;
 
 use tenax_frames::link::Client;
@@ -84,5 +86,49 @@ fn an_import_is_all_or_nothing_and_two_clients_get_their_own_answers() {
             });
         }
     });
+    served.end();
+}
+
+/// A line to the place that ends after so many commands.
+fn ends_after(place: &str, commands: usize) -> String {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let (own, place) = (listener.local_addr().unwrap(), place.trim_start_matches("tcp:").to_owned());
+    thread::spawn(move || {
+        let mut near = listener.accept().unwrap().0;
+        let mut far = TcpStream::connect(place).unwrap();
+        let (mut up, mut out) = (far.try_clone().unwrap(), near.try_clone().unwrap());
+        thread::spawn(move || io::copy(&mut up, &mut out));
+        let (mut byte, mut left) = ([0], commands);
+        while left > 0 && near.read(&mut byte).unwrap_or(0) == 1 {
+            far.write_all(&byte).unwrap();
+            left -= usize::from(byte == [0]);
+        }
+        near.shutdown(Shutdown::Both).unwrap();
+    });
+    format!("tcp:{own}")
+}
+
+#[test]
+fn a_line_that_ends_within_an_import_leaves_nothing_unsaid() {
+    let served = trusting();
+    let wanted = ["s1-mv=120", "s2-permille=250", "settle-ms=70", "motor-limit-ma=900"];
+    let values = || {
+        wanted.map(|own| tenax(&["config", "--port", &served.place, "get", own.split('=').next().unwrap()]).1)
+    };
+    let before = values();
+    let mut changed = 0;
+    for commands in 3..=11 {
+        let port = ends_after(&served.place, commands);
+        let (done, _, error) = tenax(&[&["config", "--port", &port, "set"][..], &wanted].concat());
+        // What was on its way is there.
+        thread::sleep(std::time::Duration::from_millis(100));
+        for ((now, before), own) in values().iter().zip(&before).zip(wanted) {
+            let is_told = error.contains(&own.replace('=', " = "));
+            assert!(!done && (now == before || is_told), "{own} is {now} after {commands} commands: {error}");
+            changed += usize::from(now != before);
+        }
+        assert!(tenax(&["config", "--port", &served.place, "reset", "--all"]).0);
+    }
+    assert!(changed > 5, "{changed} settings were left changed: it ends too early");
     served.end();
 }

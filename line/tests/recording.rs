@@ -39,12 +39,9 @@ fn a_recording_decides_the_same_bit_for_bit() {
     assert_eq!(outcome.difference, None);
     assert!(outcome.frames >= 11_990 && outcome.slows >= 479 && outcome.events > 5, "{outcome:?}");
 
-    // Cut short it gives its whole chunks, and torn it is no panic.
+    // Torn, or cut short, it is no panic.
     let cut = folder.path().join("cut.mcap");
     let bytes = std::fs::read(&path).unwrap();
-    std::fs::write(&cut, &bytes[..bytes.len() / 2]).unwrap();
-    let half = line_of(&cut).unwrap();
-    assert!(half.len() > line.len() / 4 && line[1..].starts_with(&half), "{} bytes", half.len());
     for length in [0, 1, 7, 8, 100, bytes.len() - 1] {
         std::fs::write(&cut, &bytes[..length]).unwrap();
         let _short = line_of(&cut);

@@ -132,7 +132,10 @@ pub fn set(client: &mut Client, wanted: &[Setting]) -> anyhow::Result<()> {
     let changes = wanted.iter().filter(|own| !before.contains(own)).copied().collect();
     let why = match set_each(client, changes, &mut done) {
         Ok(refused) if refused.is_empty() => {
-            let now = all(client)?;
+            let told = || {
+                format!("set, and not read back: {}", wanted.iter().map(words).collect::<Vec<_>>().join(", "))
+            };
+            let now = all(client).with_context(told)?;
             let other = wanted.iter().find(|own| !now.contains(own)).map(words);
             ensure!(
                 other.is_none(),
@@ -145,12 +148,12 @@ pub fn set(client: &mut Client, wanted: &[Setting]) -> anyhow::Result<()> {
         Err(error) => format!("{error:#}"),
     };
     let old = before.into_iter().filter(|own| done.iter().any(|set| set.id == own.id)).collect();
-    let _told_below = set_each(client, old, &mut back);
-    let left: Vec<String> =
-        done.iter().filter(|set| !back.iter().any(|own| own.id == set.id)).map(words).collect();
+    let is_back = set_each(client, old, &mut back).is_ok();
+    let is_left = |set: &&Setting| !is_back || !back.iter().any(|own| own.id == set.id);
+    let left: Vec<String> = done.iter().filter(is_left).map(words).collect();
     match left.is_empty() {
         true => bail!("{why}. Nothing is changed"),
-        false => bail!("{why}. Set, and not set back: {}; all others are as they were", left.join(", ")),
+        false => bail!("{why}. Set, and not set back: {}. All others are as they were", left.join(", ")),
     }
 }
 
@@ -163,9 +166,12 @@ fn set_each(
     loop {
         let (mut again, mut refused) = (Vec::new(), Vec::new());
         for setting in &left {
+            // Of a line that ends before the answer nobody knows: it has to be set back, too.
+            done.push(*setting);
             match client.ask(&Down::Set(*setting), ANSWER_WITHIN)? {
-                Answer::Setting(own) if own == *setting => done.push(own),
+                Answer::Setting(own) if own == *setting => {}
                 Answer::Refused(why) => {
+                    done.pop();
                     refused.push(format!("{} is refused: {}", words(setting), refusal_words(&why)));
                     again.push(*setting);
                     if !matches!(why, Refusal::OutOfRange { .. } | Refusal::UnknownSetting) {
