@@ -46,6 +46,10 @@ fn a_recording_decides_the_same_bit_for_bit() {
         std::fs::write(&cut, &bytes[..length]).unwrap();
         let _short = line_of(&cut);
     }
+    // Of another compression, as of other recorders.
+    let at = bytes.windows(4).position(|part| part == b"zstd").unwrap();
+    std::fs::write(&cut, [&bytes[..at], b"lz4_", &bytes[at + 4..]].concat()).unwrap();
+    assert!(format!("{:#}", line_of(&cut).unwrap_err()).contains("`mcap decompress "));
     let mut torn = bytes;
     torn.iter_mut().skip(8).step_by(997).for_each(|byte| *byte ^= 0x55);
     std::fs::write(&cut, torn).unwrap();

@@ -10,6 +10,8 @@ use tenax_frames::tool::out;
 const EXAMPLES: &str = "\
 Examples:
   tenax play hand.mcap --csv tables            CSV files in the folder tables
+Each begins with three times, in s: `time_s` goes on when the board starts again, `board_s` counts from its start, `host_s` is
+the recording computer's since 1970.
 `tenax monitor --file FILE` plays a recording on the page, which scrubs, loops and pauses it.";
 
 /// Write a recording as CSV.
