@@ -138,8 +138,10 @@ pub fn rows<R: Read>(source: R, table: &Table) -> io::Result<csv::Reader<impl Re
 fn past_head<R: BufRead>(mut source: R, table: &Table) -> io::Result<impl Read + use<R>> {
     let mut head: Vec<Vec<u8>> = Vec::new();
     while head.last().is_none_or(|line| line.starts_with(b"%")) {
-        head.push(Vec::new());
-        source.read_until(b'\n', head.last_mut().expect("it was pushed"))?;
+        let mut line = Vec::new();
+        source.read_until(b'\n', &mut line)?;
+        // A byte order mark hides what a line begins with.
+        head.push(line.strip_prefix(b"\xef\xbb\xbf").map_or_else(|| line.clone(), <[u8]>::to_vec));
     }
     let cells = |line: &[u8]| line.iter().filter(|&&byte| byte == table.delimiter as u8).count();
     for n in 0..head.len() - 1 {

@@ -107,7 +107,7 @@ fn anybodys_table_is_read_as_its_recipe_says() {
         // OpenBCI's: comments, and a name twice that nobody maps.
         (
             "[time]\ncolumn = 'Timestamp'\n",
-            "%OpenBCI Raw EXG Data\n%Sample Rate = 200 Hz\nIndex, a, Other, Other, Timestamp\n0, 7, 0, 0, 100.5\n1, 8, 0, 0, 101\n",
+            "\u{feff}%OpenBCI Raw EXG Data\n%Sample Rate = 200 Hz\nIndex, a, Other, Other, Timestamp\n0, 7, 0, 0, 100.5\n1, 8, 0, 0, 101\n",
             "a",
             [100.5, 101.0],
             [7.0, 8.0],

@@ -18,7 +18,8 @@ const LINES: usize = 50;
 pub fn suggest(path: &Path) -> anyhow::Result<String> {
     let name = path.display().to_string();
     let file = BufReader::new(File::open(path).with_context(|| format!("{name}: cannot be read"))?);
-    let lines: Vec<String> = file.lines().map_while(Result::ok).take(LINES).collect();
+    let lines = file.lines().map_while(Result::ok).take(LINES);
+    let lines: Vec<String> = lines.map(|line| line.trim_start_matches('\u{feff}').to_owned()).collect();
     let table = table(&lines);
     let Table { delimiter, decimal, header, .. } = table;
     let recording = Recording::read(path, &table, &Time::of_rate(1_000.0))?;
@@ -108,7 +109,7 @@ mod tests {
         let ros = "%time,field.effort0\n".to_owned()
             + &rows(&|n| format!("{},0.{n}\n", 1_400_000_000_000_000_000_u64 + 5_000_000 * u64::from(n)));
         let open_bci =
-            "%OpenBCI, Raw\n%Rate = 200 Hz\nIndex, EXG, Other, Other, Timestamp, Timestamp (Formatted)\n"
+            "\u{feff}%OpenBCI, Raw\n%Rate = 200 Hz\nIndex, EXG, Other, Other, Timestamp, Timestamp (Formatted)\n"
                 .to_owned()
                 + &rows(&|n| format!("{n}, -4.{n}, 0, 0, {}, 2023-01-01\n", 1.6e9 + f64::from(n) / 200.0));
         for (csv, says, first_s, rate_hz) in [
