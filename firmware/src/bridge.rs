@@ -1,4 +1,6 @@
-//! The motor bridge: TIM1 channel 1 closes (PA8), channel 2 opens (PA9), 20 kHz.
+//! The motor bridge: TIM1 channel 1 closes (PA8), channel 2 opens (PA9), 20 kHz. The driven side is high throughout and the other one for
+//! the rest of each pulse: then both are, which short-circuits the motor (slow decay), and the mean voltage is the duty's. With the other
+//! side low the motor would coast between pulses, and lose its current to the supply.
 
 #[path = "bridge/edges.rs"]
 mod edges;
@@ -63,31 +65,32 @@ impl Bridge {
         Self { placed: Duty::default() }
     }
 
-    fn drive_side<const DRIVEN: usize, const RELEASED: usize>(&mut self, duty: Duty) {
-        compare::<RELEASED>(0);
-        compare::<DRIVEN>(duty.as_per_mille() * TICKS_PER_MILLE);
+    fn drive_side(&mut self, side: usize, duty: Duty) {
+        let brakes = PERIOD - duty.as_per_mille() * TICKS_PER_MILLE;
+        self.show(if side == CLOSE { [PERIOD, brakes] } else { [brakes, PERIOD] });
         if duty != self.placed {
             self.placed = duty;
-            edges::place(duty);
+            edges::place(brakes);
         }
+    }
+
+    /// Ticks of a period in which each side is high. One update takes both over: in no period is one side new and the other old.
+    fn show(&mut self, [close, open]: [u16; 2]) {
+        let timer = pac::TIM1;
+        timer.cr1().modify(|w| w.set_udis(true));
+        timer.ccr(CLOSE).write(|w| w.set_ccr(close));
+        timer.ccr(OPEN).write(|w| w.set_ccr(open));
+        timer.cr1().modify(|w| w.set_udis(false));
     }
 }
 
-fn compare<const SIDE: usize>(ticks: u16) {
-    pac::TIM1.ccr(SIDE).write(|w| w.set_ccr(ticks));
-}
-
 impl MotorBridge for Bridge {
-    /// Takes effect when the running PWM period ends, within 50 us; 53 where its edges are moved. The timer takes both sides over together
-    /// then, and the released one is written first: never are both driven.
+    /// Takes effect when the running PWM period ends, within 50 us; 53 where its edges are moved, 100 where it ends meanwhile.
     fn drive(&mut self, drive: MotorDrive) {
         match drive {
-            MotorDrive::Coast => {
-                compare::<CLOSE>(0);
-                compare::<OPEN>(0);
-            }
-            MotorDrive::Close(duty) => self.drive_side::<CLOSE, OPEN>(duty),
-            MotorDrive::Open(duty) => self.drive_side::<OPEN, CLOSE>(duty),
+            MotorDrive::Close(duty) if duty > Duty::default() => self.drive_side(CLOSE, duty),
+            MotorDrive::Open(duty) if duty > Duty::default() => self.drive_side(OPEN, duty),
+            _ => self.show([0, 0]),
         }
     }
 }

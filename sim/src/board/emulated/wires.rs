@@ -11,6 +11,7 @@ use tenax_hal_shim::motor::{Duty, MotorDrive};
 use super::nucleo::Nucleo;
 
 const GPIOA_MODER: u64 = 0x4002_0000;
+const GPIOA_ODR: u64 = 0x4002_0014;
 const GPIOC_PUPDR: u64 = 0x4002_080C;
 const GPIOB_ODR: u64 = 0x4002_0414;
 const TIM1_CCER: u64 = 0x4001_0020;
@@ -38,6 +39,7 @@ const CR2_EXTEN: u32 = 0x3 << 28;
 const CR2_SWSTART: u32 = 1 << 30;
 const PULL_UP: u32 = 0b01;
 const PULL_DOWN: u32 = 0b10;
+const MODER_OUTPUT: u32 = 0b01;
 const MODER_ALTERNATE: u32 = 0b10;
 const AF_TIM4: u32 = 2;
 
@@ -60,14 +62,15 @@ impl<'a> Wires<'a> {
         (self.peek(GPIOB_ODR) >> 12 & 0xF) as u8
     }
 
-    /// How the bridge is driven. None: both sides at once.
+    /// How the bridge (DRV8874, table 4) drives the motor. None: it neither coasts nor drives with slow decay, so that duty is not voltage.
     pub fn motor(&mut self) -> Option<MotorDrive> {
-        let (close, open) = (self.side(8, TIM1_CCR1, CCER_CC1E), self.side(9, TIM1_CCR2, CCER_CC2E));
+        let [close, open] = [(8, TIM1_CCR1, CCER_CC1E), (9, TIM1_CCR2, CCER_CC2E)]
+            .map(|(pin, compare, enable)| self.high_permille(pin, compare, enable));
         match (close, open) {
-            (None, None) => Some(MotorDrive::Coast),
-            (Some(duty), None) => Some(MotorDrive::Close(duty)),
-            (None, Some(duty)) => Some(MotorDrive::Open(duty)),
-            (Some(_), Some(_)) => None,
+            (0, 0) => Some(MotorDrive::Coast),
+            (1_000, braked @ ..1_000) => Some(MotorDrive::Close(Duty::per_mille(1_000 - braked))),
+            (braked @ ..1_000, 1_000) => Some(MotorDrive::Open(Duty::per_mille(1_000 - braked))),
+            _ => None,
         }
     }
 
@@ -76,13 +79,17 @@ impl<'a> Wires<'a> {
         since_us - f64::from(self.peek(TIM1_CNT)) / 100.0
     }
 
-    fn side(&mut self, pin: u32, compare: u64, enable: u32) -> Option<Duty> {
-        // Most of the time the pulse is empty, and one look is enough.
-        let compare = Some(self.peek(compare)).filter(|&compare| compare > 0)?;
-        let alternate = self.peek(GPIOA_MODER) >> (2 * pin) & 0b11 == MODER_ALTERNATE;
-        let on = self.peek(TIM1_BDTR) & BDTR_MOE != 0 && self.peek(TIM1_CCER) & enable != 0;
-        let per_mille = (compare * 1_000).div_ceil(self.peek(TIM1_ARR) + 1);
-        (alternate && on).then_some(Duty::per_mille(per_mille as u16))
+    /// Part of the PWM's period in which a pin of port A is high, per mille: the bridge pulls its inputs low.
+    fn high_permille(&mut self, pin: u32, compare: u64, enable: u32) -> u16 {
+        match self.peek(GPIOA_MODER) >> (2 * pin) & 0b11 {
+            MODER_OUTPUT => 1_000 * (self.peek(GPIOA_ODR) >> pin & 1) as u16,
+            MODER_ALTERNATE => {
+                let on = self.peek(TIM1_BDTR) & BDTR_MOE != 0 && self.peek(TIM1_CCER) & enable != 0;
+                let period = self.peek(TIM1_ARR) + 1;
+                if on { (self.peek(compare).min(period) * 1_000 / period) as u16 } else { 0 }
+            }
+            _ => 0,
+        }
     }
 
     pub fn vibration(&mut self) -> Duty {

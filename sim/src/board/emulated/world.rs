@@ -127,7 +127,7 @@ impl World {
         if self.scanned < self.scans {
             let Some(drive) = wires.motor() else {
                 self.broken = Some(anyhow!(
-                    "the image drove both sides of the motor bridge at {} s: on a real board this shorts the supply",
+                    "the motor bridge neither coasts nor drives with slow decay at {} s: duty is not the motor's voltage",
                     seconds(stop.at)
                 ));
                 return None;
