@@ -102,9 +102,6 @@ async fn main(spawner: Spawner) {
     if crystal {
         clock::watch_crystal();
     }
-    if switched_on {
-        supply::hold_in_reset_when_too_low();
-    }
     // While nothing moves yet: switched on, this may erase a sector, and then the core stands still for a second or two. After
     // a reset something may be held, and the wearer must be able to let go of it.
     let mut flash = flash::Flash::new(p.FLASH);
@@ -151,6 +148,9 @@ async fn main(spawner: Spawner) {
     }
     if !crystal {
         device.fingertip.report(Fault::CrystalLost);
+    }
+    if !supply::has_brown_out_reset() {
+        device.fingertip.report(Fault::BrownOutLevel);
     }
     mail::post(device.start(identity(cause)));
     if device.fingertip.config().stream_at_start {

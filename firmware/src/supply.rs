@@ -21,9 +21,6 @@ const RISE_US: u32 = 1_000_000;
 const LINE: usize = 16;
 /// BOR_LEV: reset below 2.83 V.
 const BROWN_OUT_LEVEL_3: u8 = 0;
-const OPTION_KEYS: [u32; 2] = [0x0819_2A3B, 0x4C5D_6E7F];
-/// Longer than the option bytes take (DS10314, flash memory programming).
-const PATIENCE_US: u32 = 4_000_000;
 
 /// Waits for the supply, and watches it from then on. Nothing moves meanwhile. False: it is too low, and nothing watches it.
 #[must_use]
@@ -56,17 +53,8 @@ unsafe fn PVD() {
     last_words::give_up(Mark::SupplySagged, "")
 }
 
-/// Switches the brown-out reset on. Only where somebody has just switched the hand on: it may take a second.
-pub fn hold_in_reset_when_too_low() {
-    if FLASH.optcr().read().bor_lev() == BROWN_OUT_LEVEL_3 {
-        return;
-    }
-    for key in OPTION_KEYS {
-        FLASH.optkeyr().write_value(key);
-    }
-    FLASH.optcr().modify(|w| w.set_bor_lev(BROWN_OUT_LEVEL_3));
-    FLASH.optcr().modify(|w| w.set_optstrt(true));
-    let begun = clock_us();
-    while FLASH.sr().read().bsy() && clock_us().wrapping_sub(begun) < PATIENCE_US {}
-    FLASH.optcr().modify(|w| w.set_optlock(true));
+/// Whether the brown-out reset holds the chip below 2.83 V. It is an option byte, and the image programs none: a power cut meanwhile can leave
+/// every sector protected.
+pub fn has_brown_out_reset() -> bool {
+    FLASH.optcr().read().bor_lev() == BROWN_OUT_LEVEL_3
 }

@@ -31,3 +31,13 @@ fn a_low_supply_is_told_and_waited_for() {
     let frames = run.counters.frames;
     assert!((600..1_300).contains(&frames), "{frames} frames of the last start");
 }
+
+// Shows B2.
+#[test]
+fn a_wrong_brown_out_level_is_told_and_left_to_the_probe() {
+    let told = |brown_out_level| {
+        let run = run(Swing::new(0.3).at_rest(), &Options { brown_out_level, ..Options::default() });
+        run.events.iter().any(|event| event.kind == EventKind::Fault(Fault::BrownOutLevel))
+    };
+    assert!(told(3) && !told(0));
+}
