@@ -5,7 +5,7 @@ use embassy_stm32::gpio::{AnyPin, Input, Level, Output, Pull, Speed};
 use embassy_stm32::pac::gpio::vals::Moder;
 use embassy_stm32::pac::iwdg::vals::{Key, Pr};
 use embassy_stm32::pac::timer::vals::Ocm;
-use embassy_stm32::pac::{GPIOB, IWDG, RCC, TIM4};
+use embassy_stm32::pac::{GPIOB, IWDG, TIM4};
 use embassy_stm32::peripherals::{self, PB6, PC6, PC8, PC13};
 use tenax_hal_shim::motor::Duty;
 
@@ -87,7 +87,6 @@ pub struct Vibrator {
 
 impl Vibrator {
     pub fn new(_timer: Peri<'static, peripherals::TIM4>, _pin: Peri<'static, PB6>) -> Self {
-        RCC.apb1enr().modify(|w| w.set_tim4en(true));
         TIM4.psc().write_value(DIVIDED_BY - 1);
         TIM4.arr().write(|w| w.set_arr(Duty::FULL.as_per_mille() - 1));
         TIM4.ccmr_output(0).write(|w| {

@@ -33,7 +33,6 @@ pub struct Bridge {
 
 impl Bridge {
     pub fn new(_timer: Peri<'static, TIM1>, _close: Peri<'static, PA8>, _open: Peri<'static, PA9>) -> Self {
-        pac::RCC.apb2enr().modify(|w| w.set_tim1en(true));
         let timer = pac::TIM1;
         timer.arr().write(|w| w.set_arr(PERIOD - 1));
         timer.ccmr_output(0).write(|w| {
@@ -104,7 +103,6 @@ pub fn off() {
 
 /// Both pins low, from the first instants of a start on: they float after a reset.
 pub fn hold_low() {
-    pac::RCC.ahb1enr().modify(|w| w.set_gpioaen(true));
     for pin in PINS {
         pac::GPIOA.bsrr().write(|w| w.set_br(pin, true));
         pac::GPIOA.moder().modify(|w| w.set_moder(pin, Moder::OUTPUT));

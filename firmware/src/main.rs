@@ -36,7 +36,6 @@ mod supply;
 use core::panic::PanicInfo;
 use core::ptr::addr_of;
 
-use cortex_m::peripheral::SCB;
 use defmt_rtt as _;
 use embassy_executor::{InterruptExecutor, SpawnError, SpawnToken, Spawner};
 use embassy_stm32::interrupt::{InterruptExt, Priority};
@@ -68,6 +67,9 @@ unsafe fn I2C3_ER() {
     unsafe { URGENT.on_interrupt() }
 }
 
+/// From one look at a supply that is low to the next.
+const SUPPLY_LOOK_US: u32 = 10_000;
+
 static SCAN_RING: ConstStaticCell<[u32; halves::RING_LEN]> = ConstStaticCell::new([0; halves::RING_LEN]);
 
 /// Control's state, built in place and never moved: a move by value is a copy of 9 kB on the stack.
@@ -81,9 +83,11 @@ fn made(new: impl FnOnce() -> control::Control) -> &'static mut control::Control
 
 #[embassy_executor::main]
 async fn main(spawner: Spawner) {
+    clock::enable();
     // Before the clocks are waited for: until then the pins float.
     bridge::hold_low();
     last_words::guard_stack();
+    let supplied = supply::has_risen();
     let Start { after, cause, stay_off, .. } = last_words::start();
     let switched_on = cause == ResetCause::PowerOn;
     let browned_out = cause == ResetCause::Other && after.is_some();
@@ -98,10 +102,19 @@ async fn main(spawner: Spawner) {
     // Before anything that could take time: from here on both sides are held low.
     let bridge = Bridge::new(p.TIM1, p.PA8, p.PA9);
     let deadline = Deadline::new(p.TIM2);
-    let supplied = supply::watch();
     if crystal {
         clock::watch_crystal();
     }
+    let (up, down) = line::open(p.USART2, (p.DMA1_CH5, p.DMA1_CH6), (p.PA2, p.PA3));
+    // The first of all messages: a hello that comes after others would look like a second start.
+    let after = if supplied { after } else { after.or(Some(Fault::SupplySagged)) };
+    mail::post(Up::Hello { frame_hz: FRAME_HZ as u16, after });
+    spawner.spawn(once(serial::telemetry(up)));
+    // Nothing moves, and nothing is programmed, before the supply can drive a motor.
+    while supply::is_low() {
+        deadline.until(deadline.now().after(SUPPLY_LOOK_US), || None::<()>).await;
+    }
+    supply::watch();
     // While nothing moves yet: switched on, this may erase a sector, and then the core stands still for a second or two. After
     // a reset something may be held, and the wearer must be able to let go of it.
     let mut flash = flash::Flash::new(p.FLASH);
@@ -118,19 +131,6 @@ async fn main(spawner: Spawner) {
     let button = Button::new(p.PC13, p.PC6, p.PC8);
     let vibrator = Vibrator::new(p.TIM4, p.PB6);
     let watchdog = Watchdog::new(p.IWDG);
-    let (up, down) = line::open(p.USART2, (p.DMA1_CH5, p.DMA1_CH6), (p.PA2, p.PA3));
-
-    // The first of all messages: a hello that comes after others would look like a second start.
-    let after = if supplied { after } else { Some(Fault::SupplySagged) };
-    mail::post(Up::Hello { frame_hz: FRAME_HZ as u16, after });
-    spawner.spawn(once(serial::telemetry(up)));
-    if !supplied {
-        // Starts anew when the supply can drive a motor.
-        while supply::is_low() {
-            deadline.until(deadline.now().after(10_000), || None::<()>).await;
-        }
-        SCB::sys_reset();
-    }
     if stay_off {
         // No control, for it may be what failed: the button opens.
         wait_for_button(&deadline, bridge, &button, watchdog).await

@@ -43,6 +43,8 @@ pub struct Options {
     pub word_us: u64,
     /// BOR_LEV among the option bytes: 0 is level 3, 3 as the chip is delivered.
     pub brown_out_level: u8,
+    /// Supply when the board is switched on, mV.
+    pub supply_mv: u32,
     /// What the bridge's edges leave in the films' codes. None: nothing.
     pub coupling: Option<Coupling>,
 }
@@ -55,6 +57,7 @@ impl Default for Options {
             flash: None,
             word_us: 16,
             brown_out_level: 0,
+            supply_mv: 3_300,
             coupling: None,
         }
     }
@@ -119,12 +122,12 @@ fn closed_loop(
     let kept = || Sectors::provisioned(&provision).image();
     let (address, bytes) = options.flash.clone().unwrap_or_else(kept);
     images.push(Image::new(Path::new("flash"), bytes, Some(address))?);
-    let (rate, level) = (options.instructions_per_second, options.brown_out_level);
+    let board = Nucleo::new(options)?;
 
     // The emulator keeps its driver for itself, so it runs on a thread of its own and reports to this one.
     let (mut heard, mut inbox, mut scanned) = (Summary::default(), Inbox::default(), 0);
     let finished = std::thread::scope(|scope| {
-        let emulator = scope.spawn(move || execute(&images, (rate, level), watched, world));
+        let emulator = scope.spawn(move || execute(&images, board, watched, world));
         for Stretch { scans, line } in reports {
             scanned += scans.len();
             for (codes, drive, slipping) in scans {
@@ -166,11 +169,10 @@ fn closed_loop(
 
 fn execute(
     images: &[Image],
-    (rate, brown_out_level): (NonZeroU64, u8),
+    board: Nucleo,
     watched: [u64; 3],
     world: World,
 ) -> Result<Finished<Nucleo, World>> {
-    let board = Nucleo::new(rate, brown_out_level)?;
     let mut session = Session::new(Box::new(board), 0, VirtualNanos(1))?;
     for address in watched {
         session.watch(Watch::Instruction(address));

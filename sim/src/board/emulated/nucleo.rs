@@ -14,11 +14,11 @@ use rigless::soc::{Error, Width};
 use rigless::time::VirtualNanos;
 use tenax_hal_shim::channel::CODE_MAX;
 
+use super::Options;
 use super::flash::{MemoryMap, OPTCR, OPTKEYR};
 use super::line::Line;
 
 const HSE_HZ: u64 = 8_000_000;
-const SUPPLY_MV: u32 = 3_300;
 const CLOCK_HZ: NonZeroU64 = NonZeroU64::new(100_000_000).expect("not zero");
 const REFCLK_DIVIDER: NonZeroU32 = NonZeroU32::new(8).expect("not zero");
 /// Interrupt priority bits (RM0383, section 10.1).
@@ -41,16 +41,16 @@ pub struct Nucleo {
 }
 
 impl Nucleo {
-    /// `brown_out_level`: BOR_LEV, as a probe has programmed it.
-    pub fn new(instructions_per_second: NonZeroU64, brown_out_level: u8) -> Result<Self, Error> {
+    pub fn new(options: &Options) -> Result<Self, Error> {
         let mut chip = Stm32f427::new()?;
         chip.usart[USART2].attach(Line::default());
         chip.rcc.attach_crystals(HSE_HZ, 0);
-        chip.set_supply(SUPPLY_MV);
+        chip.set_supply(options.supply_mv);
         // The model's word is `input * 4095 / reference`: with this reference, an input is a code and nothing is rounded.
         chip.adc[0].set_reference(u32::from(CODE_MAX));
-        let mut board = Self { memory: MemoryMap::new(&chip)?, chip, instructions_per_second };
-        let options = OPTIONS | u64::from(brown_out_level) << 2;
+        let (memory, instructions_per_second) = (MemoryMap::new(&chip)?, options.instructions_per_second);
+        let mut board = Self { memory, chip, instructions_per_second };
+        let options = OPTIONS | u64::from(options.brown_out_level) << 2;
         let unlocks = OPTION_KEYS.map(|key| (OPTKEYR, key));
         for (register, value) in
             unlocks.into_iter().chain([(OPTCR, options), (OPTCR, options | OPTIONS_START)])
