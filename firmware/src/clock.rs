@@ -5,6 +5,9 @@ use embassy_stm32::pac::flash::vals::Latency;
 use embassy_stm32::pac::pwr::vals::Vos;
 use embassy_stm32::pac::rcc::vals::{Hpre, Pllm, Plln, Pllp, Pllsrc, Ppre, Sw};
 use embassy_stm32::pac::{DBGMCU, FLASH, PWR, RCC};
+use tenax_logic::restart::Mark;
+
+use crate::last_words::give_up;
 
 /// Clock of AHB and all timers, Hz (RM0383, figure 12): a scan period is a whole number of its ticks and of microseconds.
 pub const CORE_HZ: u32 = 100_000_000;
@@ -56,14 +59,34 @@ pub fn has_crystal(was_off: bool) -> bool {
         w.set_hsebyp(true);
         w.set_hseon(true);
     });
-    let looks = if was_off { LOOKS_SUPPLIED } else { LOOKS };
+    comes_within(if was_off { LOOKS_SUPPLIED } else { LOOKS }, || RCC.cr().read().hserdy())
+}
+
+fn comes_within(looks: u32, is_there: impl Fn() -> bool) -> bool {
     (0..looks).any(|_| {
-        let is_there = RCC.cr().read().hserdy();
+        let is_there = is_there();
         if !is_there {
             delay(LOOK_CYCLES);
         }
         is_there
     })
+}
+
+/// Whether the PLL locks, which takes it 0.3 ms at most (DS10314, main PLL characteristics): 2 MHz from either, times 50.
+fn locks(on_crystal: bool) -> bool {
+    // Its factors can be written while it is off.
+    RCC.cr().modify(|w| {
+        w.set_pllon(false);
+        w.set_hseon(on_crystal);
+    });
+    RCC.pllcfgr().modify(|w| {
+        w.set_pllm(if on_crystal { Pllm::DIV4 } else { Pllm::DIV8 });
+        w.set_plln(Plln::MUL100);
+        w.set_pllp(Pllp::DIV2);
+        w.set_pllsrc(if on_crystal { Pllsrc::HSE } else { Pllsrc::HSI });
+    });
+    RCC.cr().modify(|w| w.set_pllon(true));
+    comes_within(LOOKS, || RCC.cr().read().pllrdy())
 }
 
 /// Lets the chip say when the crystal stops: to the handler of the non-maskable interrupt.
@@ -73,8 +96,8 @@ pub fn watch_crystal() {
 
 /// Starts the clocks, out of a reset: HSE bypassed at 8 MHz, PLL to 100 MHz, AHB at 100 MHz, APB1 at 50, APB2 at 100; with wait states for
 /// any supply. HSI only where there is no crystal: its tolerance overruns the serial line at 921 600
-/// baud, but a hand that nobody hears is better than one that nobody can open.
-pub fn start(crystal: bool) {
+/// baud, but a hand that nobody hears is better than one that nobody can open. True: they run on the crystal.
+pub fn start(crystal: bool) -> bool {
     // A debugger is heard while the core sleeps.
     DBGMCU.cr().modify(|w| {
         w.set_dbg_sleep(true);
@@ -82,28 +105,25 @@ pub fn start(crystal: bool) {
         w.set_dbg_standby(true);
     });
     PWR.cr1().modify(|w| w.set_vos(Vos::SCALE1));
-    if !crystal {
-        RCC.cr().modify(|w| w.set_hseon(false));
+    let crystal = crystal && locks(true);
+    if !crystal && !locks(false) {
+        give_up(Mark::Panicked, "the PLL does not lock");
     }
-    RCC.pllcfgr().modify(|w| {
-        // 2 MHz from either.
-        w.set_pllm(if crystal { Pllm::DIV4 } else { Pllm::DIV8 });
-        w.set_plln(Plln::MUL100);
-        w.set_pllp(Pllp::DIV2);
-        w.set_pllsrc(if crystal { Pllsrc::HSE } else { Pllsrc::HSI });
-    });
-    RCC.cr().modify(|w| w.set_pllon(true));
-    while !RCC.cr().read().pllrdy() {}
     FLASH.acr().write(|w| w.set_latency(Latency::WS6));
-    while FLASH.acr().read().latency() != Latency::WS6 {}
+    if !comes_within(LOOKS, || FLASH.acr().read().latency() == Latency::WS6) {
+        give_up(Mark::Panicked, "the flash keeps its wait states");
+    }
     RCC.cfgr().modify(|w| {
         w.set_sw(Sw::PLL1_P);
         w.set_hpre(Hpre::DIV1);
         w.set_ppre1(Ppre::DIV2);
         w.set_ppre2(Ppre::DIV1);
     });
-    while RCC.cfgr().read().sws() != Sw::PLL1_P {}
+    if !comes_within(LOOKS, || RCC.cfgr().read().sws() == Sw::PLL1_P) {
+        give_up(Mark::Panicked, "the clock does not switch");
+    }
     if crystal {
         RCC.cr().modify(|w| w.set_hsion(false));
     }
+    crystal
 }

@@ -12,7 +12,7 @@
 //! | idle | thread executor | none | sleeps in WFE until an interrupt |
 //!
 //! Control never waits for the others: what it hands over goes into a bounded box ([`mail`]) or is dropped. If it stops,
-//! the watchdog, which only it feeds, resets the chip after 0.1 s and the bridge is off from that instant.
+//! the watchdog, which only it feeds, resets the chip after 0.1 s and the bridge is off from that instant. Before its first tick it is 8 s.
 #![no_std]
 #![no_main]
 
@@ -36,9 +36,12 @@ mod supply;
 use core::panic::PanicInfo;
 use core::ptr::addr_of;
 
+use cortex_m::peripheral::SCB;
 use defmt_rtt as _;
 use embassy_executor::{InterruptExecutor, SpawnError, SpawnToken, Spawner};
 use embassy_stm32::interrupt::{InterruptExt, Priority};
+use embassy_stm32::peripherals::IWDG;
+use embassy_stm32::wdg::IndependentWatchdog;
 use embassy_stm32::{Peripherals, bind_interrupts, interrupt};
 use static_cell::{ConstStaticCell, StaticCell};
 use tenax_hal_shim::channel::FRAME_HZ;
@@ -49,7 +52,7 @@ use tenax_logic::rescue::{self, Rescue};
 use tenax_logic::restart::{Mark, Start};
 use tenax_logic::store::Erase;
 
-use crate::board::{Button, Switches, Vibrator, Watchdog};
+use crate::board::{Button, Switches, Vibrator};
 use crate::bridge::Bridge;
 use crate::deadline::Deadline;
 
@@ -67,6 +70,9 @@ unsafe fn I2C3_ER() {
     unsafe { URGENT.on_interrupt() }
 }
 
+/// Periods of the watchdog, us: for a start, which may erase a sector (2 s), and while control runs, which feeds it 200 times in one.
+const START_US: u32 = 8_000_000;
+const CONTROL_US: u32 = 100_000;
 /// From one look at a supply that is low to the next.
 const SUPPLY_LOOK_US: u32 = 10_000;
 
@@ -83,6 +89,10 @@ fn made(new: impl FnOnce() -> control::Control) -> &'static mut control::Control
 
 #[embassy_executor::main]
 async fn main(spawner: Spawner) {
+    // SAFETY: nobody else takes them, and embassy's own start, which would, is not used: it has ways to panic.
+    let p = unsafe { Peripherals::steal() };
+    let mut watchdog = IndependentWatchdog::new(p.IWDG, START_US);
+    watchdog.unleash();
     clock::enable();
     // Before the clocks are waited for: until then the pins float.
     bridge::hold_low();
@@ -96,9 +106,7 @@ async fn main(spawner: Spawner) {
     }
     black_box::start(after, switched_on);
     let crystal = clock::has_crystal(switched_on || browned_out);
-    clock::start(crystal);
-    // SAFETY: nobody else takes them, and embassy's own start, which would, is not used: it has ways to panic.
-    let p = unsafe { Peripherals::steal() };
+    let crystal = clock::start(crystal);
     // Before anything that could take time: from here on both sides are held low.
     let bridge = Bridge::new(p.TIM1, p.PA8, p.PA9);
     let deadline = Deadline::new(p.TIM2);
@@ -113,6 +121,7 @@ async fn main(spawner: Spawner) {
     // Nothing moves, and nothing is programmed, before the supply can drive a motor.
     while supply::is_low() {
         deadline.until(deadline.now().after(SUPPLY_LOOK_US), || None::<()>).await;
+        watchdog.pet();
     }
     supply::watch();
     // While nothing moves yet: switched on, this may erase a sector, and then the core stands still for a second or two. After
@@ -130,7 +139,8 @@ async fn main(spawner: Spawner) {
     let switches = Switches::new([p.PB12.into(), p.PB13.into(), p.PB14.into(), p.PB15.into()]);
     let button = Button::new(p.PC13, p.PC6, p.PC8);
     let vibrator = Vibrator::new(p.TIM4, p.PB6);
-    let watchdog = Watchdog::new(p.IWDG);
+    // SAFETY: the one that had longer to wait is given up.
+    let watchdog = IndependentWatchdog::new(unsafe { IWDG::steal() }, CONTROL_US);
     if stay_off {
         // No control, for it may be what failed: the button opens.
         wait_for_button(&deadline, bridge, &button, watchdog).await
@@ -166,14 +176,13 @@ async fn wait_for_button(
     deadline: &Deadline,
     mut bridge: Bridge,
     button: &Button,
-    mut watchdog: Watchdog,
+    mut watchdog: IndependentWatchdog<'static, IWDG>,
 ) -> ! {
     let mut rescue = Rescue::default();
     let mut next = deadline.now();
-    watchdog.start();
     loop {
         bridge.drive(rescue.step(button.is_down()));
-        watchdog.feed();
+        watchdog.pet();
         next = next.after(rescue::STEP_US);
         deadline.until(next, || None::<()>).await;
     }
@@ -205,9 +214,7 @@ fn once<S>(task: Result<SpawnToken<S>, SpawnError>) -> SpawnToken<S> {
 
 #[panic_handler]
 fn on_panic(info: &PanicInfo) -> ! {
-    cortex_m::interrupt::disable();
-    bridge::off();
-    defmt::error!("{}", defmt::Display2Format(info));
+    let in_here = last_words::leave(Mark::Panicked, "");
     if let Some(place) = info.location() {
         // The end of a path says most.
         let path = place.file().as_bytes();
@@ -216,5 +223,8 @@ fn on_panic(info: &PanicInfo) -> ! {
         black_box::why(b":");
         black_box::why_decimal(place.line());
     }
-    last_words::give_up(Mark::Panicked, "")
+    if !in_here {
+        defmt::error!("{}", defmt::Display2Format(info));
+    }
+    SCB::sys_reset()
 }

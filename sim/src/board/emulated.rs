@@ -78,7 +78,11 @@ pub enum Mishap {
     SupplyIs(u32),
     /// The clock security system reports it if it is on. True: the crystal is there again at the next start.
     CrystalStops(bool),
+    /// With the crystal the PLL never locks.
+    PllFails,
     ResetByPin,
+    /// The core is sent where nothing is, and faults.
+    CoreStrays,
     /// The bridge's nFAULT: true is low.
     BridgeIsOff(bool),
 }

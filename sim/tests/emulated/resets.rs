@@ -25,6 +25,23 @@ fn a_lost_clock_is_survived_and_taken_up_again_when_it_is_back() {
 
 // Shows B2.
 #[test]
+fn a_pll_that_does_not_lock_on_the_crystal_is_told_and_run_without_it() {
+    let mishaps = vec![(0.2, Mishap::PllFails), (0.2, Mishap::ResetByPin)];
+    let run = run(Swing::new(0.6).at_rest(), &Options { mishaps, ..Options::default() });
+    assert_eq!(run.starts, [None, None]);
+    assert!(run.events.iter().any(|event| event.kind == EventKind::Fault(Fault::CrystalLost)));
+}
+
+// Shows B1.
+#[test]
+fn a_hang_before_control_runs_ends_in_a_reset() {
+    let mishaps = vec![(0.2, Mishap::CoreHangs)];
+    let run = run(Swing::new(9.0).at_rest(), &Options { supply_mv: 2_900, mishaps, ..Options::default() });
+    assert_eq!(run.starts, [Some(Fault::SupplySagged), Some(Fault::WatchdogReset)]);
+}
+
+// Shows B2.
+#[test]
 fn a_low_supply_is_told_and_waited_for() {
     let mishaps = vec![(0.4, Mishap::SupplyIs(2_900)), (2.4, Mishap::SupplyIs(3_100))];
     let run = run(Swing::new(3.0).at_rest(), &Options { mishaps, ..Options::default() });
