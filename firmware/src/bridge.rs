@@ -1,4 +1,4 @@
-//! The motor bridge: TIM1 channel 1 closes (PA8), channel 2 opens (PA9), 20 kHz. The driven side is high throughout and the other one for
+//! The motor bridge: TIM1 channel 1 closes (PA8), channel 4 opens (PA11), 20 kHz. The driven side is high throughout and the other one for
 //! the rest of each pulse: then both are, which short-circuits the motor (slow decay), and the mean voltage is the duty's. With the other
 //! side low the motor would coast between pulses, and lose its current to the supply.
 
@@ -8,8 +8,8 @@ mod edges;
 use embassy_stm32::Peri;
 use embassy_stm32::pac;
 use embassy_stm32::pac::gpio::vals::{Moder, Ospeedr};
-use embassy_stm32::pac::timer::vals::{Ocm, Ossi};
-use embassy_stm32::peripherals::{PA8, PA9, TIM1};
+use embassy_stm32::pac::timer::vals::{Bkp, Ocm, Ossi};
+use embassy_stm32::peripherals::{PA8, PA11, TIM1};
 use tenax_hal_shim::motor::{Duty, MotorBridge, MotorDrive};
 
 use crate::clock::CORE_HZ;
@@ -21,9 +21,10 @@ const TICKS_PER_MILLE: u16 = PERIOD / Duty::FULL.as_per_mille();
 
 /// The timer's channels of both sides, counted from 0.
 const CLOSE: usize = 0;
-const OPEN: usize = 1;
-/// Their pins of port A, and the function of both that is the timer's (DS10314, table 9).
-const PINS: [usize; 2] = [8, 9];
+const OPEN: usize = 3;
+/// Their pins of port A, and the function of both that is the timer's (DS10314, table 9). Channel 2's pin, PA9, is the serial output of the
+/// chip's boot program, which holds it high where BOOT0 is high (AN2606): a bridge there would open the hand at full duty.
+const PINS: [usize; 2] = [8, 11];
 const TIM1_PINS: u8 = 1;
 
 pub struct Bridge {
@@ -32,15 +33,15 @@ pub struct Bridge {
 }
 
 impl Bridge {
-    pub fn new(_timer: Peri<'static, TIM1>, _close: Peri<'static, PA8>, _open: Peri<'static, PA9>) -> Self {
+    pub fn new(_timer: Peri<'static, TIM1>, _close: Peri<'static, PA8>, _open: Peri<'static, PA11>) -> Self {
         let timer = pac::TIM1;
         timer.arr().write(|w| w.set_arr(PERIOD - 1));
-        timer.ccmr_output(0).write(|w| {
-            for side in [CLOSE, OPEN] {
-                w.set_ocm(side, Ocm::PWM_MODE1);
-                w.set_ocpe(side, true);
-            }
-        });
+        for side in [CLOSE, OPEN] {
+            timer.ccmr_output(side / 2).modify(|w| {
+                w.set_ocm(side % 2, Ocm::PWM_MODE1);
+                w.set_ocpe(side % 2, true);
+            });
+        }
         timer.ccer().write(|w| {
             w.set_cce(CLOSE, true);
             w.set_cce(OPEN, true);
@@ -50,6 +51,9 @@ impl Bridge {
         // too, and a halted core would drive the motor until somebody goes on.
         timer.bdtr().write(|w| {
             w.set_ossi(Ossi::IDLE_LEVEL);
+            // A crystal that stops switches them off as well (RM0383, section 12.3.12); the break's pin is wired nowhere, and low.
+            w.set_bkp(0, Bkp::ACTIVE_HIGH);
+            w.set_bke(0, true);
             w.set_moe(true);
         });
         pac::DBGMCU.apb2fzr().modify(|w| w.set_tim1(true));

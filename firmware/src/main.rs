@@ -108,7 +108,7 @@ async fn main(spawner: Spawner) {
     let crystal = clock::has_crystal(switched_on || browned_out);
     let crystal = clock::start(crystal);
     // Before anything that could take time: from here on both sides are held low.
-    let bridge = Bridge::new(p.TIM1, p.PA8, p.PA9);
+    let bridge = Bridge::new(p.TIM1, p.PA8, p.PA11);
     let deadline = Deadline::new(p.TIM2);
     if crystal {
         clock::watch_crystal();

@@ -9,7 +9,7 @@ use tenax_hal_shim::channel::SCAN_HZ;
 use super::Mishap;
 use super::flash::FlashArray;
 use super::nucleo::Nucleo;
-use super::wires::Wires;
+use super::wires::{BRIDGE_FAULT, Wires};
 
 /// DMA2 (RM0383, section 9.5): flags of streams 0 to 3, where a written one clears them, stream 0's configuration and address.
 const DMA2_LISR: u64 = 0x4002_6400;
@@ -121,7 +121,7 @@ impl Mishaps {
                 }
                 Mishap::CoreHangs => host.hold(true),
                 Mishap::PowerFails(words) => flash.cut_power_after(words),
-                Mishap::BridgeIsOff(is_off) => Wires::new(board, now).bridge_fault(is_off),
+                Mishap::BridgeIsOff(is_off) => Wires::new(board, now).pull(BRIDGE_FAULT, is_off),
             }
         }
     }

@@ -21,7 +21,7 @@ use super::coupling::Coupling;
 use super::flash::FlashArray;
 use super::mishaps::Mishaps;
 use super::nucleo::Nucleo;
-use super::wires::Wires;
+use super::wires::{BUTTON, Wires};
 use crate::board::TickCost;
 use crate::image::symbols::Symbols;
 use tenax_frames::link::Encoder;
@@ -152,7 +152,7 @@ impl World {
             self.drained += 1;
         }
         wires.put(&self.codes);
-        wires.button(plant.button());
+        wires.pull(BUTTON, plant.button());
         if pulse {
             wires.trigger();
         }
