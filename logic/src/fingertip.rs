@@ -218,10 +218,9 @@ impl Fingertip {
             if frame.slot() == FEEL_SLOT {
                 self.feel();
             }
-            let striking = matches!(self.mode, GripMode::Slip | GripMode::Settle);
             // A hand that stalls while opening is at its stop, so the request counts.
             let did = if self.asked.opens() { self.asked } else { self.drive };
-            self.senses.driven(did, core::mem::take(&mut self.took_back), striking, STEP_FRAMES);
+            self.senses.driven(did, core::mem::take(&mut self.took_back), self.mode, STEP_FRAMES);
             self.senses.motor.step(self.asked, self.drive);
             if frame.slot() == MOTOR_SLOT {
                 self.senses.motor.judge(&self.config.motor, &mut self.journal);

@@ -12,7 +12,7 @@ use tenax_hal_shim::front_end::FSR_REST_MV;
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::schedule::SCHEDULE;
 use tenax_hal_shim::wire::Forces;
-use tenax_hal_shim::words::{Capability, Fault, Reason};
+use tenax_hal_shim::words::{Capability, Fault, GripMode, Reason};
 
 use self::select_lines::SelectLines;
 use crate::array::Reading;
@@ -38,6 +38,14 @@ const WARM_UP_FRAMES: u32 = frames(200);
 const STALE_FRAMES: u32 = FRAMES_PER_SLOW_FRAME as u32;
 /// Readings that a quadrant may miss: a tick that is always late never reaches [`STALE_FRAMES`].
 const QUADRANT_MISSES: u8 = 2;
+/// Time after a closing in which the force still rises: the dead time and a reading.
+const CLOSES_FRAMES: u32 = frames(60);
+/// Time from the first touch in which nothing lifts the object yet.
+const TOUCH_FRAMES: u32 = frames(150);
+/// Silence from which a closing hand holds what does not slide.
+const SILENT_FRAMES: u32 = frames(500);
+/// Envelope below which nothing slides, samples (14 bits): a quarter of S1.
+const SILENT_LEVEL: u16 = 80;
 /// Opening since the last closing after which the hand is surely open: at its slowest it has moved 2 cm.
 const OPEN_FRAMES: u32 = frames(600);
 /// Slow frames in which a surely open hand reads a load before that is reported: 4 s.
@@ -65,6 +73,13 @@ pub struct Senses {
     frames_seen: u32,
     open_frames: u32,
     still_frames: u32,
+    /// Frames since a sound of slip or an answer to it, since the hand was closed, since a warning closed it, since
+    /// it touched something.
+    silent_frames: u32,
+    closed_frames: u32,
+    warned_frames: u32,
+    held_frames: u32,
+    /// A pulse against slip, or settling after it.
     striking: bool,
     open_and_loaded: u16,
     frames_lost: u32,
@@ -149,16 +164,31 @@ impl Senses {
     }
 
     /// Drive of the last `frames`. `took_back`: the reflex released force. `striking`: the reflex is loud.
-    pub const fn driven(&mut self, drive: MotorDrive, took_back: bool, striking: bool, frames: u32) {
+    pub fn driven(&mut self, drive: MotorDrive, took_back: bool, mode: GripMode, frames: u32) {
+        let striking = matches!(mode, GripMode::Slip | GripMode::Settle);
+        let warned = mode == GripMode::Incipient;
         self.striking = striking;
         let still = !took_back && matches!(drive, MotorDrive::Coast);
         self.still_frames = if still { self.still_frames.saturating_add(frames) } else { 0 };
+        let loud = striking || self.vibration.level >= SILENT_LEVEL;
+        self.silent_frames = if loud { 0 } else { self.silent_frames.saturating_add(frames) };
+        self.held_frames = if self.unloaded { 0 } else { self.held_frames.saturating_add(frames) };
+        let closes = matches!(drive, MotorDrive::Close(_));
+        self.closed_frames = if closes { 0 } else { self.closed_frames.saturating_add(frames) };
+        self.warned_frames = if closes && warned { 0 } else { self.warned_frames.saturating_add(frames) };
         match drive {
             MotorDrive::Open(_) if took_back => {}
             MotorDrive::Open(_) => self.open_frames = self.open_frames.saturating_add(frames),
             MotorDrive::Close(_) => self.open_frames = 0,
             MotorDrive::Coast => {}
         }
+    }
+
+    /// The hand has closed within the motor's dead time, and shear shows the contact's offset alone: it has just
+    /// touched the object, or a warning closed it in silence. Whoever else closes it may lift the object meanwhile.
+    const fn closes_silently(&self) -> bool {
+        let touches = self.closed_frames <= CLOSES_FRAMES && self.held_frames <= TOUCH_FRAMES;
+        touches || (self.warned_frames <= CLOSES_FRAMES && self.silent_frames >= SILENT_FRAMES)
     }
 
     /// False if the finger is loaded.

@@ -308,6 +308,14 @@ impl Machine {
             let added = (uv - sites.rest_uv[n]).min(MOST_DRIFT_UV) * 256;
             self.drift[n] += (added - self.drift[n]) / if hums { HUM_FRAMES } else { f.rest_frames.max(1) };
         }
+        // What was added is no more than what is there.
+        for (n, Electrode { uv, .. }) in electrodes.into_iter().enumerate() {
+            let Some(uv) = uv else { continue };
+            let added = (uv - sites.rest_uv[n]).min(MOST_DRIFT_UV) * 256;
+            if added < self.drift[n] && self.drift[n] > 0 {
+                self.drift[n] += (added.max(0) - self.drift[n]) / 8;
+            }
+        }
     }
 
     fn uncalibrated(&mut self, electrodes: &[Electrode; 2]) {

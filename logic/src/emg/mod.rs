@@ -178,7 +178,10 @@ impl Emg {
         let mover = self.decide.mover();
         let raised = self.channels.each_ref().map(|channel| channel.raised);
         self.lone = self.proof.lone(levels, raised);
-        let (trust, hears) = (&self.channels[mover].trust, self.decide.hears());
+        let other = &self.electrodes[1 - mover];
+        // A deaf electrode can prove nothing, and disprove nothing.
+        let hears = self.decide.hears().filter(|_| other.uv.is_some() && !other.hums);
+        let trust = &self.channels[mover].trust;
         let proven = self.proof.take(levels, wish, mover, trust, hears, raised[mover]) && !self.lone[mover];
         let [flexor, extensor] = &self.channels;
         self.verdict = Verdict {

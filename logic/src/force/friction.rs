@@ -231,7 +231,7 @@ impl Detector for FrictionDetector {
             Some(forces) => forces.ratio_permille,
             None => None,
         };
-        self.carry(ratio.and(sensed.forces).map(|forces| forces.ft_mn), sensed.moves);
+        self.carry(ratio.and(sensed.forces).map(|forces| forces.ft_mn), sensed.moves && !sensed.wearer);
         Some(Said { slip: false, incipient: self.process(config, ratio) })
     }
 

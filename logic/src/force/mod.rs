@@ -2,6 +2,7 @@
 
 mod ahead;
 mod asked;
+mod contact;
 pub mod drift;
 pub mod friction;
 pub mod fsr;

@@ -5,6 +5,7 @@
 use tenax_hal_shim::channel::FSR_COUNT;
 use tenax_hal_shim::wire::Forces;
 
+use super::contact::Contact;
 use super::drift::{Cells, Drift};
 use super::fsr::{force_mn, uv_above_rest};
 
@@ -20,15 +21,29 @@ pub struct ForceSensor {
     drift_uv: [i32; FSR_COUNT],
     last_uv: [i32; FSR_COUNT],
     drift: Drift,
+    contact: Contact,
 }
 
 impl ForceSensor {
-    /// One sample of each quadrant. `loaded_mn`: load from which Ft/Fn is valid. `opened`: the motor has opened
-    /// the hand since it last closed it. None once the quadrants have drifted too far.
-    pub fn process(&mut self, samples: [u16; FSR_COUNT], loaded_mn: i32, opened: bool) -> Option<Forces> {
+    /// One 14-bit sample of each quadrant A, B, C, D. `loaded_mn`: load from which Ft/Fn is valid. `opened`:
+    /// the motor has opened the hand since it last closed it. None once the quadrants have drifted too far.
+    pub fn process(
+        &mut self,
+        samples: [u16; FSR_COUNT],
+        loaded_mn: i32,
+        opened: bool,
+        closes: bool,
+    ) -> Option<Forces> {
         self.last_uv = samples.map(uv_above_rest);
         match self.drift.step(self.quadrants(), loaded_mn, opened) {
-            Cells::Known(quadrant_mn) => Some(forces(quadrant_mn, loaded_mn)),
+            Cells::Known(quadrant_mn) => {
+                self.contact.feel(quadrant_mn, loaded_mn, closes);
+                let mut forces = forces(self.contact.centred(quadrant_mn), loaded_mn);
+                if carrying(&quadrant_mn) < AGREEING {
+                    forces.ratio_permille = None;
+                }
+                Some(forces)
+            }
             Cells::Sunk => None,
         }
     }
@@ -83,10 +98,13 @@ pub fn forces([a, b, c, d]: [i32; FSR_COUNT], loaded_mn: i32) -> Forces {
     let fy_mn = (a + d) - (c + b);
     let ft_mn = root([fx_mn, fy_mn]);
     let load_mn = a + b + c + d;
-    let agreeing = [a, b, c, d].into_iter().filter(|&mn| mn >= CARRIES_MN).count();
-    let ratio_permille = (load_mn >= loaded_mn.max(1) && agreeing >= AGREEING && fn_mn > 0)
+    let ratio_permille = (load_mn >= loaded_mn.max(1) && carrying(&[a, b, c, d]) >= AGREEING && fn_mn > 0)
         .then(|| (i64::from(ft_mn) * 1_000 / i64::from(fn_mn)).min(i64::from(u16::MAX)) as u16);
     Forces { fn_mn, fx_mn, fy_mn, ft_mn, load_mn, ratio_permille }
+}
+
+fn carrying(cells: &[i32; FSR_COUNT]) -> usize {
+    cells.iter().filter(|&&mn| mn >= CARRIES_MN).count()
 }
 
 /// Root of the sum of squares, rounded down; exact, where micromath's is off by up to 6.1 %.
@@ -123,7 +141,7 @@ mod tests {
             let samples = fsr_quadrants_n(normal, shear, 0.0)
                 .map(|f| sample_from_mv(fsr_mv(f, f64::powf).round() as u32));
             let read = f64::from(
-                ForceSensor::default().process(samples, 600, false).unwrap().ratio_permille.unwrap(),
+                ForceSensor::default().process(samples, 600, false, false).unwrap().ratio_permille.unwrap(),
             ) / 1e3;
             let true_ratio: f64 = shear / normal;
             let expected = true_ratio / true_ratio.hypot(1.0);
@@ -145,15 +163,15 @@ mod tests {
             let mut sensor = ForceSensor::default();
             let offset = sample_from_mv((FSR_REST_MV as i32 + mv) as u32);
             for _ in 0..80 * 6 {
-                sensor.process([offset; 4], 600, false);
+                sensor.process([offset; 4], 600, false, false);
                 sensor.follow();
             }
-            assert!(sensor.process([offset; 4], 600, false).unwrap().load_mn <= 8, "{mv} mV");
+            assert!(sensor.process([offset; 4], 600, false, false).unwrap().load_mn <= 8, "{mv} mV");
             assert_eq!(sensor.zero_uv(), &[0; 4], "what is kept stays as it was calibrated");
             let pressed = sample_from_mv((FSR_REST_MV as i32 + mv + 200) as u32);
-            let before = sensor.process([pressed; 4], 600, false);
+            let before = sensor.process([pressed; 4], 600, false, false);
             (0..800).for_each(|_| sensor.follow());
-            assert_eq!(sensor.process([pressed; 4], 600, false), before);
+            assert_eq!(sensor.process([pressed; 4], 600, false, false), before);
         }
     }
 
@@ -162,10 +180,10 @@ mod tests {
     fn only_an_unloaded_finger_is_zeroed() {
         let mut sensor = ForceSensor::default();
         let offset = sample_from_mv(FSR_REST_MV + 30);
-        assert!(sensor.process([offset; 4], 600, false).unwrap().fn_mn > 0);
+        assert!(sensor.process([offset; 4], 600, false, false).unwrap().fn_mn > 0);
         assert!(sensor.zero());
-        assert_eq!(sensor.process([offset; 4], 600, false).unwrap().fn_mn, 0);
-        sensor.process([sample_from_mv(FSR_REST_MV + 300); 4], 600, false);
+        assert_eq!(sensor.process([offset; 4], 600, false, false).unwrap().fn_mn, 0);
+        sensor.process([sample_from_mv(FSR_REST_MV + 300); 4], 600, false, false);
         assert!(!sensor.zero());
     }
 }

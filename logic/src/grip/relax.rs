@@ -13,7 +13,7 @@ const STEP_MN: i32 = 200;
 const LEAST_MN: i32 = 100;
 /// Load that is kept, as a part of what the friction of sliding needs, per mille: an object that is pulled
 /// loose comes to rest by itself.
-const KEPT_PERMILLE: i32 = 1_050;
+const KEPT_PERMILLE: i32 = 1_060;
 const DUTY_PERMILLE: u16 = 100;
 
 #[derive(Clone, Copy, Debug)]

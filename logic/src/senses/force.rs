@@ -40,7 +40,8 @@ impl Senses {
         // Seen unloaded once, its zero is known again.
         self.pressed &= samples.into_iter().any(is_pressed);
         let opened = self.open_frames > 0;
-        let forces = self.force_sensor.process(samples, config.friction.loaded_mn, opened);
+        let forces =
+            self.force_sensor.process(samples, config.friction.loaded_mn, opened, self.closes_silently());
         let Some(mut forces) = forces else {
             self.forces = None;
             return;

@@ -153,7 +153,7 @@ impl VibrationDetector {
 
     fn judge(&mut self, config: &VibrationConfig, loudest: Levels) -> Vibration {
         let Levels { envelope, above } = loudest;
-        let asked = self.mains.asks().filter(|_| self.loud_frames == 0);
+        let asked = self.mains.asks();
         if let Some(film) = asked.and_then(|film| self.films.get_mut(film)) {
             film.adapt(&mut self.mains, config.mains_60_hz);
         }

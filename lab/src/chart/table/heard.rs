@@ -7,6 +7,7 @@ use tenax_hal_shim::detector::DetectorSet;
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::Down;
+use tenax_hal_shim::words::GripMode;
 use tenax_logic::array::{Features, Preprocessor, Reading};
 use tenax_logic::config::Config;
 use tenax_logic::detectors::{Detectors, Sensed};
@@ -253,7 +254,7 @@ impl Ears {
         let new = if slot == ARRAY_COUNT { features.push(taxels) } else { None };
         let believed = detectors.slip().or(detectors.incipient()).and(detectors.credible());
         hear(&Felt { frame, sensed: &sensed, believed, features: new, slides });
-        senses.driven(drive, false, false, 1);
+        senses.driven(drive, false, GripMode::Watch, 1);
         if frame.ends_slow_frame() {
             senses.think(config, samples, journal);
             let _told = journal.take_slow();
