@@ -1,11 +1,10 @@
-//! The small parts of the board that control drives: button and light, select lines, vibration motor, watchdog.
+//! The small parts of the board that control drives: button and light, select lines, vibration motor.
 
 use embassy_stm32::Peri;
 use embassy_stm32::gpio::{AnyPin, Input, Level, Output, Pull, Speed};
 use embassy_stm32::pac::gpio::vals::Moder;
-use embassy_stm32::pac::iwdg::vals::{Key, Pr};
 use embassy_stm32::pac::timer::vals::Ocm;
-use embassy_stm32::pac::{GPIOB, IWDG, RCC, TIM4};
+use embassy_stm32::pac::{GPIOB, TIM4};
 use embassy_stm32::peripherals::{self, PB6, PC6, PC8, PC13};
 use tenax_hal_shim::motor::Duty;
 
@@ -87,7 +86,6 @@ pub struct Vibrator {
 
 impl Vibrator {
     pub fn new(_timer: Peri<'static, peripherals::TIM4>, _pin: Peri<'static, PB6>) -> Self {
-        RCC.apb1enr().modify(|w| w.set_tim4en(true));
         TIM4.psc().write_value(DIVIDED_BY - 1);
         TIM4.arr().write(|w| w.set_arr(Duty::FULL.as_per_mille() - 1));
         TIM4.ccmr_output(0).write(|w| {
@@ -109,31 +107,4 @@ impl Vibrator {
 
 pub fn vibrator_off() {
     TIM4.ccr(0).write(|w| w.set_ccr(0));
-}
-
-/// Period of the watchdog, ms. Control feeds it 200 times in one; nobody else does.
-const PERIOD_MS: u16 = 100;
-/// Its clock, 32 kHz (17 to 47, DS10314), divided by 4.
-const TICKS_PER_MS: u16 = 8;
-
-/// The independent watchdog: unless it is fed, it resets the chip. Its clock is its own.
-pub struct Watchdog {
-    _taken: Peri<'static, peripherals::IWDG>,
-}
-
-impl Watchdog {
-    pub fn new(taken: Peri<'static, peripherals::IWDG>) -> Self {
-        IWDG.kr().write(|w| w.set_key(Key::ENABLE));
-        IWDG.pr().write(|w| w.set_pr(Pr::DIVIDE_BY4));
-        IWDG.rlr().write(|w| w.set_rl(PERIOD_MS * TICKS_PER_MS - 1));
-        Self { _taken: taken }
-    }
-
-    pub fn start(&mut self) {
-        IWDG.kr().write(|w| w.set_key(Key::START));
-    }
-
-    pub fn feed(&mut self) {
-        IWDG.kr().write(|w| w.set_key(Key::RESET));
-    }
 }

@@ -1,4 +1,6 @@
-//! The motor bridge: TIM1 channel 1 closes (PA8), channel 2 opens (PA9), 20 kHz.
+//! The motor bridge: TIM1 channel 1 closes (PA8), channel 4 opens (PA11), 20 kHz. The driven side is high throughout and the other one for
+//! the rest of each pulse: then both are, which short-circuits the motor (slow decay), and the mean voltage is the duty's. With the other
+//! side low the motor would coast between pulses, and lose its current to the supply.
 
 #[path = "bridge/edges.rs"]
 mod edges;
@@ -6,8 +8,8 @@ mod edges;
 use embassy_stm32::Peri;
 use embassy_stm32::pac;
 use embassy_stm32::pac::gpio::vals::{Moder, Ospeedr};
-use embassy_stm32::pac::timer::vals::{Ocm, Ossi};
-use embassy_stm32::peripherals::{PA8, PA9, TIM1};
+use embassy_stm32::pac::timer::vals::{Bkp, Ocm, Ossi};
+use embassy_stm32::peripherals::{PA8, PA11, TIM1};
 use tenax_hal_shim::motor::{Duty, MotorBridge, MotorDrive};
 
 use crate::clock::CORE_HZ;
@@ -19,9 +21,10 @@ const TICKS_PER_MILLE: u16 = PERIOD / Duty::FULL.as_per_mille();
 
 /// The timer's channels of both sides, counted from 0.
 const CLOSE: usize = 0;
-const OPEN: usize = 1;
-/// Their pins of port A, and the function of both that is the timer's (DS10314, table 9).
-const PINS: [usize; 2] = [8, 9];
+const OPEN: usize = 3;
+/// Their pins of port A, and the function of both that is the timer's (DS10314, table 9). Channel 2's pin, PA9, is the serial output of the
+/// chip's boot program, which holds it high where BOOT0 is high (AN2606): a bridge there would open the hand at full duty.
+const PINS: [usize; 2] = [8, 11];
 const TIM1_PINS: u8 = 1;
 
 pub struct Bridge {
@@ -30,16 +33,15 @@ pub struct Bridge {
 }
 
 impl Bridge {
-    pub fn new(_timer: Peri<'static, TIM1>, _close: Peri<'static, PA8>, _open: Peri<'static, PA9>) -> Self {
-        pac::RCC.apb2enr().modify(|w| w.set_tim1en(true));
+    pub fn new(_timer: Peri<'static, TIM1>, _close: Peri<'static, PA8>, _open: Peri<'static, PA11>) -> Self {
         let timer = pac::TIM1;
         timer.arr().write(|w| w.set_arr(PERIOD - 1));
-        timer.ccmr_output(0).write(|w| {
-            for side in [CLOSE, OPEN] {
-                w.set_ocm(side, Ocm::PWM_MODE1);
-                w.set_ocpe(side, true);
-            }
-        });
+        for side in [CLOSE, OPEN] {
+            timer.ccmr_output(side / 2).modify(|w| {
+                w.set_ocm(side % 2, Ocm::PWM_MODE1);
+                w.set_ocpe(side % 2, true);
+            });
+        }
         timer.ccer().write(|w| {
             w.set_cce(CLOSE, true);
             w.set_cce(OPEN, true);
@@ -49,6 +51,9 @@ impl Bridge {
         // too, and a halted core would drive the motor until somebody goes on.
         timer.bdtr().write(|w| {
             w.set_ossi(Ossi::IDLE_LEVEL);
+            // A crystal that stops switches them off as well (RM0383, section 12.3.12); the break's pin is wired nowhere, and low.
+            w.set_bkp(0, Bkp::ACTIVE_HIGH);
+            w.set_bke(0, true);
             w.set_moe(true);
         });
         pac::DBGMCU.apb2fzr().modify(|w| w.set_tim1(true));
@@ -63,31 +68,32 @@ impl Bridge {
         Self { placed: Duty::default() }
     }
 
-    fn drive_side<const DRIVEN: usize, const RELEASED: usize>(&mut self, duty: Duty) {
-        compare::<RELEASED>(0);
-        compare::<DRIVEN>(duty.as_per_mille() * TICKS_PER_MILLE);
+    fn drive_side(&mut self, side: usize, duty: Duty) {
+        let brakes = PERIOD - duty.as_per_mille() * TICKS_PER_MILLE;
+        self.show(if side == CLOSE { [PERIOD, brakes] } else { [brakes, PERIOD] });
         if duty != self.placed {
             self.placed = duty;
-            edges::place(duty);
+            edges::place(brakes);
         }
+    }
+
+    /// Ticks of a period in which each side is high. One update takes both over: in no period is one side new and the other old.
+    fn show(&mut self, [close, open]: [u16; 2]) {
+        let timer = pac::TIM1;
+        timer.cr1().modify(|w| w.set_udis(true));
+        timer.ccr(CLOSE).write(|w| w.set_ccr(close));
+        timer.ccr(OPEN).write(|w| w.set_ccr(open));
+        timer.cr1().modify(|w| w.set_udis(false));
     }
 }
 
-fn compare<const SIDE: usize>(ticks: u16) {
-    pac::TIM1.ccr(SIDE).write(|w| w.set_ccr(ticks));
-}
-
 impl MotorBridge for Bridge {
-    /// Takes effect when the running PWM period ends, within 50 us; 53 where its edges are moved. The timer takes both sides over together
-    /// then, and the released one is written first: never are both driven.
+    /// Takes effect when the running PWM period ends, within 50 us; 53 where its edges are moved, 100 where it ends meanwhile.
     fn drive(&mut self, drive: MotorDrive) {
         match drive {
-            MotorDrive::Coast => {
-                compare::<CLOSE>(0);
-                compare::<OPEN>(0);
-            }
-            MotorDrive::Close(duty) => self.drive_side::<CLOSE, OPEN>(duty),
-            MotorDrive::Open(duty) => self.drive_side::<OPEN, CLOSE>(duty),
+            MotorDrive::Close(duty) if duty > Duty::default() => self.drive_side(CLOSE, duty),
+            MotorDrive::Open(duty) if duty > Duty::default() => self.drive_side(OPEN, duty),
+            _ => self.show([0, 0]),
         }
     }
 }
@@ -101,7 +107,6 @@ pub fn off() {
 
 /// Both pins low, from the first instants of a start on: they float after a reset.
 pub fn hold_low() {
-    pac::RCC.ahb1enr().modify(|w| w.set_gpioaen(true));
     for pin in PINS {
         pac::GPIOA.bsrr().write(|w| w.set_br(pin, true));
         pac::GPIOA.moder().modify(|w| w.set_moder(pin, Moder::OUTPUT));

@@ -1,5 +1,7 @@
 //! The control task: a frame in, a motor drive out, every 0.5 ms. It waits for nothing but the next frame.
 
+use embassy_stm32::peripherals::IWDG;
+use embassy_stm32::wdg::IndependentWatchdog;
 use tenax_hal_shim::channel::{FRAMES_PER_SLOW_FRAME, SLOW_HZ};
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::motor::{MotorBridge, MotorDrive};
@@ -10,7 +12,7 @@ use tenax_logic::fingertip::Fingertip;
 use tenax_logic::stream::SENSES_SLOT;
 
 use crate::black_box;
-use crate::board::{Button, Switches, Vibrator, Watchdog};
+use crate::board::{Button, Switches, Vibrator};
 use crate::bridge::Bridge;
 use crate::counts;
 use crate::last_words;
@@ -23,7 +25,7 @@ pub struct Control {
     vibrator: Vibrator,
     switches: Switches,
     button: Button,
-    watchdog: Watchdog,
+    watchdog: IndependentWatchdog<'static, IWDG>,
     slow_frames: u16,
 }
 
@@ -35,7 +37,7 @@ impl Control {
         (bridge, vibrator): (Bridge, Vibrator),
         switches: Switches,
         button: Button,
-        watchdog: Watchdog,
+        watchdog: IndependentWatchdog<'static, IWDG>,
     ) -> Self {
         Self { device: Device::default(), bridge, vibrator, switches, button, watchdog, slow_frames: 0 }
     }
@@ -51,7 +53,7 @@ impl Control {
         }
         let drive = tenax_control_tick(&mut self.device.fingertip, frame);
         self.bridge.drive(drive);
-        self.watchdog.feed();
+        self.watchdog.pet();
         counts::TICKS.add_one();
 
         self.device.sampled(frame);
@@ -144,6 +146,5 @@ fn tenax_control_command(device: &mut Device, command: &Received<Down>) -> Resul
 
 #[embassy_executor::task]
 pub async fn control(scan: Scan, control: &'static mut Control) -> ! {
-    control.watchdog.start();
     scan.run(|frame| control.on_frame(frame)).await
 }

@@ -57,24 +57,34 @@ fn keep(place: usize, word: u32) {
 
 /// Switches the bridge off, leaves the mark and the reason, and resets the chip.
 pub fn give_up(mark: Mark, why: &str) -> ! {
+    leave(mark, why);
+    SCB::sys_reset()
+}
+
+/// Switches the bridge off, leaves the mark and the reason, with all interrupts off from now on. True: there is a mark already.
+pub fn leave(mark: Mark, why: &str) -> bool {
     cortex_m::interrupt::disable();
     bridge::off();
     board::vibrator_off();
+    let is_left = kept(MARK) != 0;
     if let Some((_, word)) = MARKS.iter().find(|(own, _)| *own == mark) {
         keep(MARK, *word);
     }
     black_box::why(why.as_bytes());
-    SCB::sys_reset()
+    is_left
 }
 
-/// A fault of the core: as a panic.
+/// A fault of the core: as a panic. Its reason is PC, LR, CFSR, HFSR and BFAR (ARM DDI 0403E, section B3.2).
 #[exception]
 unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
-    cortex_m::interrupt::disable();
-    bridge::off();
-    black_box::why(b"hard fault at 0x");
-    black_box::why_hex(frame.pc());
-    give_up(Mark::Panicked, "")
+    leave(Mark::Panicked, "HF");
+    // SAFETY: reading these registers changes nothing.
+    let scb = unsafe { &*SCB::PTR };
+    for word in [frame.pc(), frame.lr(), scb.cfsr.read(), scb.hfsr.read(), scb.bfar.read()] {
+        black_box::why(b" ");
+        black_box::why_hex(word);
+    }
+    SCB::sys_reset()
 }
 
 /// The clock security system says that the crystal has stopped (RM0383, section 6.2.7): the chip runs on at 16 MHz, far too slow for

@@ -11,7 +11,7 @@ use embassy_stm32::interrupt::{InterruptExt, Priority};
 use embassy_stm32::pac::dma::regs::{Ixr, Ndtr};
 use embassy_stm32::pac::dma::vals::Dir;
 use embassy_stm32::pac::gpio::vals::{Moder, Ospeedr, Pupdr};
-use embassy_stm32::pac::{self, DMA1, GPIOA, RCC, USART2};
+use embassy_stm32::pac::{self, DMA1, GPIOA, USART2};
 use embassy_stm32::peripherals::{self, DMA1_CH5, DMA1_CH6, PA2, PA3};
 use embassy_stm32::{Peri, interrupt};
 use embassy_sync::waitqueue::AtomicWaker;
@@ -59,7 +59,6 @@ pub fn open(
     _streams: (Peri<'static, DMA1_CH5>, Peri<'static, DMA1_CH6>),
     _pins: (Peri<'static, PA2>, Peri<'static, PA3>),
 ) -> (Up, Down) {
-    RCC.apb1enr().modify(|w| w.set_usart2en(true));
     // Nobody may be at the other end.
     GPIOA.pupdr().modify(|w| w.set_pupdr(3, Pupdr::PULL_UP));
     for pin in [2, 3] {

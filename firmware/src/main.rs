@@ -12,7 +12,7 @@
 //! | idle | thread executor | none | sleeps in WFE until an interrupt |
 //!
 //! Control never waits for the others: what it hands over goes into a bounded box ([`mail`]) or is dropped. If it stops,
-//! the watchdog, which only it feeds, resets the chip after 0.1 s and the bridge is off from that instant.
+//! the watchdog, which only it feeds, resets the chip after 0.1 s and the bridge is off from that instant. Before its first tick it is 8 s.
 #![no_std]
 #![no_main]
 
@@ -40,6 +40,8 @@ use cortex_m::peripheral::SCB;
 use defmt_rtt as _;
 use embassy_executor::{InterruptExecutor, SpawnError, SpawnToken, Spawner};
 use embassy_stm32::interrupt::{InterruptExt, Priority};
+use embassy_stm32::peripherals::IWDG;
+use embassy_stm32::wdg::IndependentWatchdog;
 use embassy_stm32::{Peripherals, bind_interrupts, interrupt};
 use static_cell::{ConstStaticCell, StaticCell};
 use tenax_hal_shim::channel::FRAME_HZ;
@@ -50,7 +52,7 @@ use tenax_logic::rescue::{self, Rescue};
 use tenax_logic::restart::{Mark, Start};
 use tenax_logic::store::Erase;
 
-use crate::board::{Button, Switches, Vibrator, Watchdog};
+use crate::board::{Button, Switches, Vibrator};
 use crate::bridge::Bridge;
 use crate::deadline::Deadline;
 
@@ -68,6 +70,12 @@ unsafe fn I2C3_ER() {
     unsafe { URGENT.on_interrupt() }
 }
 
+/// Periods of the watchdog, us: for a start, which may erase a sector (2 s), and while control runs, which feeds it 200 times in one.
+const START_US: u32 = 8_000_000;
+const CONTROL_US: u32 = 100_000;
+/// From one look at a supply that is low to the next.
+const SUPPLY_LOOK_US: u32 = 10_000;
+
 static SCAN_RING: ConstStaticCell<[u32; halves::RING_LEN]> = ConstStaticCell::new([0; halves::RING_LEN]);
 
 /// Control's state, built in place and never moved: a move by value is a copy of 9 kB on the stack.
@@ -81,9 +89,15 @@ fn made(new: impl FnOnce() -> control::Control) -> &'static mut control::Control
 
 #[embassy_executor::main]
 async fn main(spawner: Spawner) {
+    // SAFETY: nobody else takes them, and embassy's own start, which would, is not used: it has ways to panic.
+    let p = unsafe { Peripherals::steal() };
+    let mut watchdog = IndependentWatchdog::new(p.IWDG, START_US);
+    watchdog.unleash();
+    clock::enable();
     // Before the clocks are waited for: until then the pins float.
     bridge::hold_low();
     last_words::guard_stack();
+    let supplied = supply::has_risen();
     let Start { after, cause, stay_off, .. } = last_words::start();
     let switched_on = cause == ResetCause::PowerOn;
     let browned_out = cause == ResetCause::Other && after.is_some();
@@ -92,19 +106,24 @@ async fn main(spawner: Spawner) {
     }
     black_box::start(after, switched_on);
     let crystal = clock::has_crystal(switched_on || browned_out);
-    clock::start(crystal);
-    // SAFETY: nobody else takes them, and embassy's own start, which would, is not used: it has ways to panic.
-    let p = unsafe { Peripherals::steal() };
+    let crystal = clock::start(crystal);
     // Before anything that could take time: from here on both sides are held low.
-    let bridge = Bridge::new(p.TIM1, p.PA8, p.PA9);
+    let bridge = Bridge::new(p.TIM1, p.PA8, p.PA11);
     let deadline = Deadline::new(p.TIM2);
-    let supplied = supply::watch();
     if crystal {
         clock::watch_crystal();
     }
-    if switched_on {
-        supply::hold_in_reset_when_too_low();
+    let (up, down) = line::open(p.USART2, (p.DMA1_CH5, p.DMA1_CH6), (p.PA2, p.PA3));
+    // The first of all messages: a hello that comes after others would look like a second start.
+    let after = if supplied { after } else { after.or(Some(Fault::SupplySagged)) };
+    mail::post(Up::Hello { frame_hz: FRAME_HZ as u16, after });
+    spawner.spawn(once(serial::telemetry(up)));
+    // Nothing moves, and nothing is programmed, before the supply can drive a motor.
+    while supply::is_low() {
+        deadline.until(deadline.now().after(SUPPLY_LOOK_US), || None::<()>).await;
+        watchdog.pet();
     }
+    supply::watch();
     // While nothing moves yet: switched on, this may erase a sector, and then the core stands still for a second or two. After
     // a reset something may be held, and the wearer must be able to let go of it.
     let mut flash = flash::Flash::new(p.FLASH);
@@ -120,20 +139,8 @@ async fn main(spawner: Spawner) {
     let switches = Switches::new([p.PB12.into(), p.PB13.into(), p.PB14.into(), p.PB15.into()]);
     let button = Button::new(p.PC13, p.PC6, p.PC8);
     let vibrator = Vibrator::new(p.TIM4, p.PB6);
-    let watchdog = Watchdog::new(p.IWDG);
-    let (up, down) = line::open(p.USART2, (p.DMA1_CH5, p.DMA1_CH6), (p.PA2, p.PA3));
-
-    // The first of all messages: a hello that comes after others would look like a second start.
-    let after = if supplied { after } else { Some(Fault::SupplySagged) };
-    mail::post(Up::Hello { frame_hz: FRAME_HZ as u16, after });
-    spawner.spawn(once(serial::telemetry(up)));
-    if !supplied {
-        // Starts anew when the supply can drive a motor.
-        while supply::is_low() {
-            deadline.until(deadline.now().after(10_000), || None::<()>).await;
-        }
-        SCB::sys_reset();
-    }
+    // SAFETY: the one that had longer to wait is given up.
+    let watchdog = IndependentWatchdog::new(unsafe { IWDG::steal() }, CONTROL_US);
     if stay_off {
         // No control, for it may be what failed: the button opens.
         wait_for_button(&deadline, bridge, &button, watchdog).await
@@ -152,6 +159,9 @@ async fn main(spawner: Spawner) {
     if !crystal {
         device.fingertip.report(Fault::CrystalLost);
     }
+    if !supply::has_brown_out_reset() {
+        device.fingertip.report(Fault::BrownOutLevel);
+    }
     mail::post(device.start(identity(cause)));
     if device.fingertip.config().stream_at_start {
         store::restored(&flash, &found, mail::post);
@@ -166,14 +176,13 @@ async fn wait_for_button(
     deadline: &Deadline,
     mut bridge: Bridge,
     button: &Button,
-    mut watchdog: Watchdog,
+    mut watchdog: IndependentWatchdog<'static, IWDG>,
 ) -> ! {
     let mut rescue = Rescue::default();
     let mut next = deadline.now();
-    watchdog.start();
     loop {
         bridge.drive(rescue.step(button.is_down()));
-        watchdog.feed();
+        watchdog.pet();
         next = next.after(rescue::STEP_US);
         deadline.until(next, || None::<()>).await;
     }
@@ -205,9 +214,7 @@ fn once<S>(task: Result<SpawnToken<S>, SpawnError>) -> SpawnToken<S> {
 
 #[panic_handler]
 fn on_panic(info: &PanicInfo) -> ! {
-    cortex_m::interrupt::disable();
-    bridge::off();
-    defmt::error!("{}", defmt::Display2Format(info));
+    let in_here = last_words::leave(Mark::Panicked, "");
     if let Some(place) = info.location() {
         // The end of a path says most.
         let path = place.file().as_bytes();
@@ -216,5 +223,8 @@ fn on_panic(info: &PanicInfo) -> ! {
         black_box::why(b":");
         black_box::why_decimal(place.line());
     }
-    last_words::give_up(Mark::Panicked, "")
+    if !in_here {
+        defmt::error!("{}", defmt::Display2Format(info));
+    }
+    SCB::sys_reset()
 }

@@ -65,8 +65,6 @@ impl Scan {
         for (port, analog) in [pac::GPIOA, pac::GPIOB, pac::GPIOC].into_iter().zip(ANALOG) {
             port.moder().modify(|w| w.0 |= analog);
         }
-        pac::RCC.apb2enr().modify(|w| w.set_adc1en(true));
-        pac::RCC.apb1enr().modify(|w| w.set_tim3en(true));
         pac::TIM3.arr().write(|w| w.set_arr((CORE_HZ / SCAN_HZ - 1) as u16));
         pac::TIM3.cr2().write(|w| w.set_mms(Mms::UPDATE));
         let due = Due { sequence: 0, begins: deadline.now() };

@@ -1,50 +1,53 @@
-//! The supply: while it sags, the bridge is off.
+//! The supply: judged before anything is fast, and while it sags the bridge is off.
 //!
 //! Two guards of the chip (DS10314, embedded reset and power control block; typical figures). The voltage detector at level 6
 //! (RM0383, section 5.2.3) says that the supply falls below 2.93 V: the bridge goes off and the chip is reset while code still
 //! runs as it should. Level 7 would be 3.03 V falling and 3.14 V rising: a dip of 0.25 V that harms nothing would let go of the
 //! motor, and a rail of 3.1 V would never start. The brown-out reset at level 3 holds the chip from 2.83 V on.
 
+use cortex_m::asm::delay;
 use embassy_stm32::interrupt;
 use embassy_stm32::interrupt::{InterruptExt, Priority};
 use embassy_stm32::pac::{EXTI, FLASH, PWR};
 use tenax_logic::restart::Mark;
 
-use crate::deadline::clock_us;
+use crate::clock::{LOOK_CYCLES, LOOKS_PER_S};
 use crate::last_words;
 
 /// PLS: 2.93 V falling, 3.03 V rising.
 const LEVEL_6: u8 = 6;
-/// Longest rise of the supply, us. A battery behind a regulator takes some ms.
-const RISE_US: u32 = 1_000_000;
 /// The line of the voltage detector's output among the external interrupts (RM0383, section 10.2.5).
 const LINE: usize = 16;
 /// BOR_LEV: reset below 2.83 V.
 const BROWN_OUT_LEVEL_3: u8 = 0;
-const OPTION_KEYS: [u32; 2] = [0x0819_2A3B, 0x4C5D_6E7F];
-/// Longer than the option bytes take (DS10314, flash memory programming).
-const PATIENCE_US: u32 = 4_000_000;
 
-/// Waits for the supply, and watches it from then on. Nothing moves meanwhile. False: it is too low, and nothing watches it.
+/// Waits for the supply to rise, at 16 MHz, which any supply carries; 1 s at most: a battery behind a regulator takes some ms. False: it is
+/// too low, and nothing may be programmed.
 #[must_use]
-pub fn watch() -> bool {
+pub fn has_risen() -> bool {
     PWR.cr1().modify(|w| {
         w.set_pls(LEVEL_6);
         w.set_pvde(true);
     });
-    let begun = clock_us();
-    while is_low() {
-        if clock_us().wrapping_sub(begun) >= RISE_US {
-            return false;
-        }
-    }
+    (0..LOOKS_PER_S).any(|_| {
+        // The detector itself needs some microseconds to start.
+        delay(LOOK_CYCLES);
+        !is_low()
+    })
+}
+
+/// Watches the supply from now on.
+pub fn watch() {
     EXTI.rtsr(0).modify(|w| w.set_line(LINE, true));
     EXTI.pr(0).write(|w| w.set_line(LINE, true));
     EXTI.imr(0).modify(|w| w.set_line(LINE, true));
     interrupt::PVD.set_priority(Priority::P0);
     // SAFETY: its handler touches nothing that anybody else uses.
     unsafe { interrupt::PVD.enable() };
-    true
+    // Its edge may have come before the line was cleared.
+    if is_low() {
+        last_words::give_up(Mark::SupplySagged, "");
+    }
 }
 
 pub fn is_low() -> bool {
@@ -56,17 +59,8 @@ unsafe fn PVD() {
     last_words::give_up(Mark::SupplySagged, "")
 }
 
-/// Switches the brown-out reset on. Only where somebody has just switched the hand on: it may take a second.
-pub fn hold_in_reset_when_too_low() {
-    if FLASH.optcr().read().bor_lev() == BROWN_OUT_LEVEL_3 {
-        return;
-    }
-    for key in OPTION_KEYS {
-        FLASH.optkeyr().write_value(key);
-    }
-    FLASH.optcr().modify(|w| w.set_bor_lev(BROWN_OUT_LEVEL_3));
-    FLASH.optcr().modify(|w| w.set_optstrt(true));
-    let begun = clock_us();
-    while FLASH.sr().read().bsy() && clock_us().wrapping_sub(begun) < PATIENCE_US {}
-    FLASH.optcr().modify(|w| w.set_optlock(true));
+/// Whether the brown-out reset holds the chip below 2.83 V. It is an option byte, and the image programs none: a power cut meanwhile can leave
+/// every sector protected.
+pub fn has_brown_out_reset() -> bool {
+    FLASH.optcr().read().bor_lev() == BROWN_OUT_LEVEL_3
 }

@@ -3,7 +3,7 @@
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
-/// Part of the full motor voltage, 0 to 1000 per mille.
+/// The motor's mean voltage over the supply's, 0 to 1000 per mille.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, Schema)]
 #[serde(from = "u16", into = "u16")]
 pub struct Duty(u16);
@@ -54,10 +54,10 @@ impl MotorDrive {
 }
 
 /// A board's motor bridge. An implementation guarantees:
-/// - [`drive`](Self::drive) takes effect at once, never blocks, and never drives both sides at the same time, not even
-///   between two calls;
-/// - before the first call, after [`MotorDrive::Coast`], and after a panic or a reset by the watchdog, neither side is
-///   driven.
+/// - [`drive`](Self::drive) takes effect at once and never blocks; no state between two drives drives another way than either;
+/// - the motor's mean voltage is the duty's: between pulses it is short-circuited, not left to coast;
+/// - before the first call, after [`MotorDrive::Coast`] or a duty of 0, and after a panic or a reset by the watchdog, neither side
+///   is driven.
 pub trait MotorBridge {
     fn drive(&mut self, drive: MotorDrive);
 }

@@ -151,6 +151,8 @@ pub enum Fault {
     /// The hand is surely open, and the force sensor still reads a load that is no offset. So the hand is never known to be empty:
     /// zeros and noise floors are not learned, and there is no power-up consent.
     NeverUnloaded,
+    /// The chip's brown-out level is not 3: below 2.83 V nothing resets it. An option byte, which only a probe should program.
+    BrownOutLevel,
 }
 
 /// Reason for which the motor is not driven although a source asks for it.

@@ -11,7 +11,7 @@ const SIGNALS: &str = "\
 | other signals of the NUCLEO-F411RE | pins |
 |---|---|
 | select lines S0 to S3, shared by both CD74HC4067 switches | PB12 to PB15 |
-| motor bridge, 20 kHz: close, open | PA8 (TIM1 channel 1), PA9 (TIM1 channel 2) |
+| motor bridge, 20 kHz: close, open | PA8 (TIM1 channel 1), PA11 (TIM1 channel 4) |
 | vibration motor, 20 kHz | PB6 (TIM4 channel 1) |
 | button to ground | PC13 |
 | light: series resistor and LED to ground | PC6 |

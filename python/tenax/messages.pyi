@@ -223,7 +223,10 @@ class Fault_TooManyRestarts:
 class Fault_NeverUnloaded:
     kind: Literal['NeverUnloaded']
 
-Fault = Union[Fault_SensorLost, Fault_SensorBack, Fault_CapabilityLost, Fault_CapabilityBack, Fault_FramesLost, Fault_WatchdogReset, Fault_PanicReset, Fault_PressedAtBoot, Fault_RecordDamaged, Fault_StoreFull, Fault_StoreFailed, Fault_SupplySagged, Fault_CrystalLost, Fault_TooManyRestarts, Fault_NeverUnloaded]
+class Fault_BrownOutLevel:
+    kind: Literal['BrownOutLevel']
+
+Fault = Union[Fault_SensorLost, Fault_SensorBack, Fault_CapabilityLost, Fault_CapabilityBack, Fault_FramesLost, Fault_WatchdogReset, Fault_PanicReset, Fault_PressedAtBoot, Fault_RecordDamaged, Fault_StoreFull, Fault_StoreFailed, Fault_SupplySagged, Fault_CrystalLost, Fault_TooManyRestarts, Fault_NeverUnloaded, Fault_BrownOutLevel]
 
 GripMode = Literal['Standby', 'Wearer', 'Watch', 'Slip', 'Incipient', 'Settle']
 

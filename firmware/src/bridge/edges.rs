@@ -2,14 +2,13 @@
 //!
 //! An edge makes ground and reference jump for some tenths of a microsecond, and a film whose sampling ends then is converted with it. A
 //! scan lasts 2.5 periods of the bridge, so every other one sees the edges 25 us later: modulo 25 us they keep their place. The falling
-//! edge's depends on the duty. So each duty has a place of its own for the rising one, at which both come 0.86 us or more before the next
-//! end of a sampling, and 0.2 us or more after the last: the counter is moved when the duty changes, by 5.4 us at most.
+//! edge's depends on the pulse of the side that is switched. So each pulse has a place of its own for the rising one, at which both come 0.86 us or more before the next
+//! end of a sampling, and 0.2 us or more after the last: the counter is moved when the pulse changes, by 5.4 us at most.
 
 use embassy_stm32::pac::{TIM1, TIM3};
 use tenax_hal_shim::channel::PVDF_COUNT;
-use tenax_hal_shim::motor::Duty;
 
-use super::{PERIOD, TICKS_PER_MILLE};
+use super::PERIOD;
 
 /// Two scans see the edges this many ticks apart.
 const HALF: u32 = PERIOD as u32 / 2;
@@ -21,7 +20,7 @@ const FIRST: u32 = 1_090;
 /// Places are so far apart, and there are so many.
 const STEP: u32 = 10;
 const STEPS: u8 = 55;
-/// Duties that share a place differ by less, ticks.
+/// Pulses that share a place differ by less, ticks.
 const BUCKET: u32 = 20;
 /// From a reading of the bridge's counter to its writing: instructions of a cycle, and the bus.
 const WRITTEN: u32 = 11;
@@ -29,7 +28,7 @@ const WRITTEN: u32 = 11;
 const BEFORE: i32 = 75;
 const AFTER: i32 = 10;
 
-/// Place of the rising edge for each bucket of duties, modulo [`HALF`], in steps from [`FIRST`].
+/// Place of the rising edge for each bucket of pulses, modulo [`HALF`], in steps from [`FIRST`].
 static PLACES: [u8; (HALF / BUCKET) as usize] = {
     let mut places = [0; (HALF / BUCKET) as usize];
     let mut bucket = 0;
@@ -44,7 +43,7 @@ static PLACES: [u8; (HALF / BUCKET) as usize] = {
             }
             step += 1;
         }
-        assert!(best >= 0, "each duty has a place");
+        assert!(best >= 0, "each pulse has a place");
         bucket += 1;
     }
     places
@@ -65,10 +64,10 @@ const fn least(a: i32, b: i32) -> i32 {
     if a < b { a } else { b }
 }
 
-/// Moves the edges to where this duty has them: the next samplings are tens of microseconds away.
+/// Moves the edges to where a pulse of so many ticks has them: the next samplings are tens of microseconds away.
 #[inline(never)]
-pub fn place(duty: Duty) {
-    let bucket = u32::from(duty.as_per_mille() * TICKS_PER_MILLE) % HALF / BUCKET;
+pub fn place(pulse: u16) {
+    let bucket = u32::from(pulse) % HALF / BUCKET;
     let Some(&step) = PLACES.get(bucket as usize) else { return };
     let rises = FIRST + STEP * u32::from(step);
     cortex_m::interrupt::free(|_| {

@@ -61,6 +61,7 @@ pub fn in_words(fault: &Fault) -> String {
             "restarted too often: nothing moves before it is switched off and on".into()
         }
         Fault::NeverUnloaded => "the force sensor reads a load, and the hand is surely open".into(),
+        Fault::BrownOutLevel => "the brown-out level is not 3: set it with a probe (docs/bring-up.md)".into(),
     }
 }
 

@@ -5,16 +5,17 @@ use std::collections::VecDeque;
 use tenax_hal_shim::channel::SCANS_PER_FRAME;
 use tenax_hal_shim::motor::{Duty, MotorDrive};
 
+use super::motor::Motor;
 use crate::file::sections;
 use crate::schedule::STEP_S;
 
-///
-/// The duty sets the finger speed, less what the load takes: `v = v_max (duty - F / F_max)`, so the fingers stall at `duty F_max`. A
+/// The [`Motor`] sets the finger speed: `v = v_max (duty - F / F_max)`, so the fingers stall at `duty F_max`. A
 /// load never opens the hand. A drive reaches the fingers one dead time later. A position-controlled gripper moves by whole steps,
 /// each as fast as it can. At the ends of its range and while the gear is jammed the motor is blocked.
 #[derive(Clone, Debug)]
 pub struct Gripper {
     parameters: sections::Gripper,
+    pub motor: Motor,
     pipeline: VecDeque<MotorDrive>,
     aim_mm: f64,
     /// Distance between the pads when nothing is compressed, mm.
@@ -30,6 +31,7 @@ impl Gripper {
         let dead_steps = (parameters.dead_time_ms.get() / 1e3 / STEP_S).round() as usize;
         Self {
             parameters: parameters.clone(),
+            motor: Motor::default(),
             pipeline: vec![MotorDrive::Coast; dead_steps].into(),
             aim_mm: parameters.opening_mm.get_ref().get(),
             opening_mm: parameters.opening_mm.get_ref().get(),
@@ -42,27 +44,21 @@ impl Gripper {
     pub fn step(&mut self, drive: MotorDrive, grip_n: f64) {
         self.pipeline.push_back(drive);
         let load = grip_n / self.parameters.force_n.get();
-        let (speed, current_part) = match self.pipeline.pop_front().unwrap_or(drive) {
-            MotorDrive::Coast => (0.0, 0.0),
-            MotorDrive::Close(duty) => {
-                let duty = f64::from(duty.as_per_mille()) / 1e3;
-                let is_blocked = self.is_jammed || self.aim_mm <= 0.0;
-                let speed = if is_blocked { 0.0 } else { (duty - load).max(0.0) };
-                (-speed, duty * (duty - speed))
-            }
+        let range_mm = self.parameters.range_mm.get();
+        let (way, duty, carried, is_at_end) = match self.pipeline.pop_front().unwrap_or(drive) {
+            MotorDrive::Coast => (0.0, Duty::default(), 0.0, false),
+            MotorDrive::Close(duty) => (-1.0, duty, load, self.aim_mm <= 0.0),
             // The load pushes the fingers the way they go; it takes nothing from their speed and adds nothing.
-            MotorDrive::Open(duty) => {
-                let duty = f64::from(duty.as_per_mille()) / 1e3;
-                let is_blocked = self.is_jammed || self.aim_mm >= self.parameters.range_mm.get();
-                if is_blocked { (0.0, duty * duty) } else { (duty, 0.0) }
-            }
+            MotorDrive::Open(duty) => (1.0, duty, 0.0, self.aim_mm >= range_mm),
         };
+        let duty = part(duty);
+        let speed = if self.is_jammed || is_at_end { 0.0 } else { self.motor.speed(duty, carried) };
+        self.current_part = duty * self.motor.current(duty, speed);
         let before_mm = self.opening_mm;
-        self.aim_mm = (self.aim_mm + speed * self.parameters.speed_mm_s.get() * STEP_S)
-            .clamp(0.0, self.parameters.range_mm.get());
+        let moved_mm = way * speed * self.parameters.speed_mm_s.get() * STEP_S;
+        self.aim_mm = (self.aim_mm + moved_mm).clamp(0.0, range_mm);
         self.opening_mm = self.reach(load);
         self.speed_mm_s = (self.opening_mm - before_mm) / STEP_S;
-        self.current_part = current_part;
     }
 
     /// Drive for the next frame with which each finger comes to press with `target_n` and no more, once the drives before it have
@@ -79,8 +75,8 @@ impl Gripper {
             .iter()
             .map(|drive| match drive {
                 MotorDrive::Coast => 0.0,
-                MotorDrive::Close(duty) => (f64::from(duty.as_per_mille()) / 1e3 - load).max(0.0),
-                MotorDrive::Open(duty) => -f64::from(duty.as_per_mille()) / 1e3,
+                MotorDrive::Close(duty) => self.motor.speed(part(*duty), load),
+                MotorDrive::Open(duty) => -part(*duty),
             })
             .sum::<f64>()
             * self.parameters.speed_mm_s.get()
@@ -128,8 +124,13 @@ impl Gripper {
     }
 }
 
+fn part(duty: Duty) -> f64 {
+    f64::from(duty.as_per_mille()) / 1e3
+}
+
 #[cfg(test)]
 mod tests {
+    use super::super::motor::Decay;
     use super::*;
     use crate::file::quantity::Play;
 
@@ -170,6 +171,19 @@ mod tests {
         assert_eq!(gripper.grip_n(WIDTH_MM, STIFFNESS_N_PER_MM), grip_n);
         run(&mut gripper, MotorDrive::Close(Duty::per_mille(100)), 1.0);
         assert_eq!(gripper.grip_n(WIDTH_MM, STIFFNESS_N_PER_MM), grip_n);
+    }
+
+    #[test]
+    fn a_bridge_that_coasts_between_pulses_closes_no_further_on_what_it_holds() {
+        let pressed_n = |decay| {
+            let mut gripper = Gripper::new(&hand());
+            run(&mut gripper, MotorDrive::Close(Duty::per_mille(200)), 20.0);
+            gripper.motor.decay = decay;
+            run(&mut gripper, MotorDrive::Close(Duty::per_mille(300)), 10.0);
+            gripper.grip_n(WIDTH_MM, STIFFNESS_N_PER_MM)
+        };
+        assert!((pressed_n(Decay::Slow) - 42.0).abs() < 0.5);
+        assert!((pressed_n(Decay::Fast) - 28.0).abs() < 0.5);
     }
 
     #[test]

@@ -14,7 +14,7 @@ use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError, mpsc};
 use std::time::Instant;
 
-use anyhow::{Context, Result, anyhow};
+use anyhow::{Context, Result, anyhow, ensure};
 use rigless::emulator::{self, Finished, Start, Watch};
 use rigless::image::Image;
 use rigless::session::Session;
@@ -41,6 +41,10 @@ pub struct Options {
     pub flash: Option<(u64, Vec<u8>)>,
     /// Time to program a word, us, in which the core stands still: 16 typically, 100 at most (DS10314).
     pub word_us: u64,
+    /// BOR_LEV among the option bytes: 0 is level 3, 3 as the chip is delivered.
+    pub brown_out_level: u8,
+    /// Supply when the board is switched on, mV.
+    pub supply_mv: u32,
     /// What the bridge's edges leave in the films' codes. None: nothing.
     pub coupling: Option<Coupling>,
 }
@@ -52,6 +56,8 @@ impl Default for Options {
             mishaps: Vec::new(),
             flash: None,
             word_us: 16,
+            brown_out_level: 0,
+            supply_mv: 3_300,
             coupling: None,
         }
     }
@@ -72,7 +78,11 @@ pub enum Mishap {
     SupplyIs(u32),
     /// The clock security system reports it if it is on. True: the crystal is there again at the next start.
     CrystalStops(bool),
+    /// With the crystal the PLL never locks.
+    PllFails,
     ResetByPin,
+    /// The core is sent where nothing is, and faults.
+    CoreStrays,
     /// The bridge's nFAULT: true is low.
     BridgeIsOff(bool),
 }
@@ -116,12 +126,12 @@ fn closed_loop(
     let kept = || Sectors::provisioned(&provision).image();
     let (address, bytes) = options.flash.clone().unwrap_or_else(kept);
     images.push(Image::new(Path::new("flash"), bytes, Some(address))?);
-    let rate = options.instructions_per_second;
+    let board = Nucleo::new(options)?;
 
     // The emulator keeps its driver for itself, so it runs on a thread of its own and reports to this one.
     let (mut heard, mut inbox, mut scanned) = (Summary::default(), Inbox::default(), 0);
     let finished = std::thread::scope(|scope| {
-        let emulator = scope.spawn(move || execute(&images, rate, watched, world));
+        let emulator = scope.spawn(move || execute(&images, board, watched, world));
         for Stretch { scans, line } in reports {
             scanned += scans.len();
             for (codes, drive, slipping) in scans {
@@ -134,6 +144,10 @@ fn closed_loop(
     })?;
 
     let mut world = finished.driver;
+    ensure!(
+        !world.flash.options_written,
+        "the image programs option bytes: a power cut then may lock the chip"
+    );
     if let Some(broken) = world.broken {
         return Err(broken);
     }
@@ -159,11 +173,10 @@ fn closed_loop(
 
 fn execute(
     images: &[Image],
-    rate: NonZeroU64,
+    board: Nucleo,
     watched: [u64; 3],
     world: World,
 ) -> Result<Finished<Nucleo, World>> {
-    let board = Nucleo::new(rate)?;
     let mut session = Session::new(Box::new(board), 0, VirtualNanos(1))?;
     for address in watched {
         session.watch(Watch::Instruction(address));

@@ -83,6 +83,21 @@ fn the_seconds_before_a_hang_and_before_a_panic_are_there_at_the_next_start() {
     assert_eq!((run.counters.ticks_late, run.counters.frames_lost), (0, 0), "{:?}", run.counters);
 }
 
+#[test]
+fn a_fault_of_the_core_says_where_it_was_and_what_the_core_says_of_it() {
+    let options = Options { mishaps: vec![(0.3, Mishap::CoreStrays)], ..Options::default() };
+    let run = run(asking(Swing::new(1.0), 0.8, 1).at_rest(), &options);
+    assert_eq!(run.starts, [None, Some(Fault::PanicReset)]);
+    let why = String::from_utf8(pieces(&run)[0].why.to_vec()).expect("text");
+    // PC, LR, CFSR with IBUSERR, HFSR with FORCED (ARM DDI 0403E, section B3.2).
+    let words: Vec<&str> = why.split(' ').collect();
+    assert_eq!(
+        (words.len(), words[0], words[1], words[3], words[4]),
+        (6, "HF", "60000000", "00000100", "40000000"),
+        "{why}"
+    );
+}
+
 // Shows B2.
 #[test]
 fn a_brown_out_is_told_and_keeps_what_was_said() {

@@ -1,8 +1,9 @@
 //! Resets by a lost clock and a low supply: each start says why, and the board goes on with what there is.
 
 use tenax_hal_shim::wire::EventKind;
-use tenax_hal_shim::words::Fault;
+use tenax_hal_shim::words::{Fault, Kept};
 use tenax_sim::board::emulated::{Mishap, Options};
+use tenax_sim::board::kept::Sectors;
 
 use crate::{Swing, run};
 
@@ -22,12 +23,71 @@ fn a_lost_clock_is_survived_and_taken_up_again_when_it_is_back() {
     assert_eq!((run.counters.overruns, run.counters.frames_lost), (0, 0));
 }
 
+// Shows B2.
+#[test]
+fn a_pll_that_does_not_lock_on_the_crystal_is_told_and_run_without_it() {
+    let mishaps = vec![(0.2, Mishap::PllFails), (0.2, Mishap::ResetByPin)];
+    let run = run(Swing::new(0.6).at_rest(), &Options { mishaps, ..Options::default() });
+    assert_eq!(run.starts, [None, None]);
+    assert!(run.events.iter().any(|event| event.kind == EventKind::Fault(Fault::CrystalLost)));
+}
+
+// Shows B1.
+#[test]
+fn a_hang_before_control_runs_ends_in_a_reset() {
+    let mishaps = vec![(0.2, Mishap::CoreHangs)];
+    let run = run(Swing::new(9.0).at_rest(), &Options { supply_mv: 2_900, mishaps, ..Options::default() });
+    assert_eq!(run.starts, [Some(Fault::SupplySagged), Some(Fault::WatchdogReset)]);
+}
+
+// Shows B2.
 #[test]
 fn a_low_supply_is_told_and_waited_for() {
     let mishaps = vec![(0.4, Mishap::SupplyIs(2_900)), (2.4, Mishap::SupplyIs(3_100))];
     let run = run(Swing::new(3.0).at_rest(), &Options { mishaps, ..Options::default() });
-    // It is reset, waits for a second, says why, and is reset again when the supply is there.
-    assert_eq!(run.starts, [None, Some(Fault::SupplySagged), None]);
+    // It is reset, says why, and goes on when the supply is there.
+    assert_eq!(run.starts, [None, Some(Fault::SupplySagged)]);
     let frames = run.counters.frames;
     assert!((600..1_300).contains(&frames), "{frames} frames of the last start");
+}
+
+// Shows B2.
+#[test]
+fn a_wrong_brown_out_level_is_told_and_left_to_the_probe() {
+    let told = |brown_out_level| {
+        let run = run(Swing::new(0.3).at_rest(), &Options { brown_out_level, ..Options::default() });
+        run.events.iter().any(|event| event.kind == EventKind::Fault(Fault::BrownOutLevel))
+    };
+    assert!(told(3) && !told(0));
+}
+
+// Shows B2.
+#[test]
+fn a_hand_whose_supply_sags_slowly_at_each_closing_stays_off_in_the_end() {
+    let sags = (0..6).map(|n| 0.2 + 0.7 * f64::from(n));
+    let mishaps =
+        sags.flat_map(|at_s| [(at_s, Mishap::SupplyIs(2_900)), (at_s + 0.4, Mishap::SupplyIs(3_300))]);
+    let options = Options { mishaps: mishaps.collect(), ..Options::default() };
+    let mut starts = vec![Some(Fault::SupplySagged); 7];
+    (starts[0], starts[6]) = (None, Some(Fault::TooManyRestarts));
+    assert_eq!(run(Swing::new(4.4).at_rest(), &options).starts, starts);
+}
+
+#[test]
+fn nothing_is_erased_or_programmed_while_the_supply_is_low() {
+    // Switched on, the image makes room in a sector that is half full.
+    let full = (0..208u8).fold(Sectors::blank(), |sectors, n| sectors.saving(Kept::Network, &[n; 296]));
+    let run = |mishaps| {
+        let options = Options { supply_mv: 2_900, mishaps, flash: Some(full.image()), ..Options::default() };
+        run(Swing::new(3.5).at_rest(), &options)
+    };
+    let low = run(Vec::new());
+    assert_eq!(
+        (low.flash.erases, low.flash.words, &low.starts[..]),
+        (0, 0, &[Some(Fault::SupplySagged)][..])
+    );
+    // The control: when the supply has risen, it does.
+    let risen = run(vec![(0.2, Mishap::SupplyIs(3_300))]);
+    assert_eq!((risen.flash.erases, &risen.starts[..]), (1, &[Some(Fault::SupplySagged)][..]));
+    assert!(risen.counters.frames > 0);
 }

@@ -28,8 +28,9 @@ impl Coupling {
         if duty == Duty::FULL {
             return;
         }
+        // The side that is not driven is high for the rest of the duty, and comes first.
         let begins_us = begins_us + self.late_us;
-        let falls_us = begins_us + PERIOD_US * f64::from(duty.as_per_mille()) / 1e3;
+        let falls_us = begins_us + PERIOD_US * (1.0 - f64::from(duty.as_per_mille()) / 1e3);
         for (rank, code) in scan.iter_mut().take(PVDF_COUNT).enumerate() {
             let ends_us = RANK_US * rank as f64 + SAMPLED_US;
             let left = |edge_us: f64| (-(ends_us - edge_us).rem_euclid(PERIOD_US) / self.gone_us).exp();

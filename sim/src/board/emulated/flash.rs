@@ -18,6 +18,8 @@ use super::nucleo::Nucleo;
 const INTERFACE: &str = "FLASH";
 const FLASH_CR: u64 = 0x4002_3C10;
 const FLASH_SR: u64 = 0x4002_3C0C;
+pub const OPTKEYR: u64 = 0x4002_3C08;
+pub const OPTCR: u64 = 0x4002_3C14;
 
 const CR_PG: u64 = 1;
 const CR_SER: u64 = 1 << 1;
@@ -86,6 +88,7 @@ pub struct FlashArray {
     pub words: u64,
     pub erases: u64,
     power: Option<u32>,
+    pub options_written: bool,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -111,6 +114,8 @@ impl FlashArray {
         }
         if (BASE..BASE + SIZE).contains(&access.address) {
             self.store(access, session, host);
+        } else if [OPTKEYR, OPTCR].contains(&access.address) {
+            self.options_written = true;
         } else if access.address == FLASH_CR {
             let (board, now) = (session.board_mut(), access.virtual_time);
             let control = board.peek(now, FLASH_CR);

@@ -9,7 +9,7 @@ use tenax_hal_shim::channel::SCAN_HZ;
 use super::Mishap;
 use super::flash::FlashArray;
 use super::nucleo::Nucleo;
-use super::wires::Wires;
+use super::wires::{BRIDGE_FAULT, Wires};
 
 /// DMA2 (RM0383, section 9.5): flags of streams 0 to 3, where a written one clears them, stream 0's configuration and address.
 const DMA2_LISR: u64 = 0x4002_6400;
@@ -27,6 +27,10 @@ const PVDO: u64 = 1 << 2;
 const RCC_CR: u64 = 0x4002_3800;
 const CSSON: u64 = 1 << 19;
 const HSEON: u64 = 1 << 16;
+const PLLON: u64 = 1 << 24;
+/// The PLL's configuration, and its bit for the crystal (section 6.3.2).
+const RCC_PLLCFGR: u64 = 0x4002_3804;
+const PLLSRC_HSE: u64 = 1 << 22;
 const NMI_VECTOR: u64 = 0x0800_0008;
 const PVD_VECTOR: u64 = 0x0800_0044;
 const NOWHERE: u64 = 0x6000_0000;
@@ -34,7 +38,8 @@ const NOWHERE: u64 = 0x6000_0000;
 pub struct Mishaps {
     due: Vec<(usize, Mishap)>,
     lent: Option<u64>,
-    has_no_crystal: bool,
+    /// Bits of RCC's control that do nothing: [`HSEON`], or [`PLLON`] on the crystal.
+    dead_clocks: u64,
 }
 
 impl Mishaps {
@@ -42,16 +47,18 @@ impl Mishaps {
     pub fn new(mishaps: &[(f64, Mishap)]) -> Self {
         let scan = |at_s: f64| (at_s * f64::from(SCAN_HZ)) as usize;
         let due = mishaps.iter().map(|(at_s, mishap)| (scan(*at_s), mishap.clone())).collect();
-        Self { due, lent: None, has_no_crystal: false }
+        Self { due, lent: None, dead_clocks: 0 }
     }
 
     /// The core made an access. `rigless` finds a crystal's empty pin ready after its start-up time, at 0 Hz: it never gets so far.
     pub fn accessed(&mut self, access: &Access, session: &mut Session<Nucleo>) {
-        if self.has_no_crystal && access.kind == AccessKind::Write && access.address == RCC_CR {
+        if self.dead_clocks != 0 && access.kind == AccessKind::Write && access.address == RCC_CR {
             let (board, now) = (session.board_mut(), access.virtual_time);
+            let on_crystal = board.peek(now, RCC_PLLCFGR) & PLLSRC_HSE != 0;
+            let dead = self.dead_clocks & if on_crystal { HSEON | PLLON } else { HSEON };
             let control = board.peek(now, RCC_CR);
-            if control & HSEON != 0 {
-                board.poke(now, RCC_CR, control & !HSEON);
+            if control & dead != 0 {
+                board.poke(now, RCC_CR, control & !dead);
             }
         }
     }
@@ -76,6 +83,8 @@ impl Mishaps {
             let board = session.board_mut();
             match mishap {
                 Mishap::ResetByPin => {}
+                Mishap::PllFails => self.dead_clocks = PLLON,
+                Mishap::CoreStrays => self.lead_pvd_to(NOWHERE | 1, host),
                 Mishap::BrownsOut => board.browned_out(now),
                 Mishap::SupplyIs(mv) => {
                     board.chip.set_supply(mv);
@@ -85,14 +94,11 @@ impl Mishaps {
                     }
                 }
                 Mishap::CrystalStops(comes_back) => {
-                    self.has_no_crystal = !comes_back;
+                    self.dead_clocks = if comes_back { 0 } else { HSEON };
                     if board.peek(now, RCC_CR) & CSSON != 0 {
                         // `rigless` lets nobody raise the core's own exception: another's vector leads to its handler for an instant.
-                        let [handler, own] =
-                            [NMI_VECTOR, PVD_VECTOR].map(|at| host.read(at, Width::W32).unwrap_or(0));
-                        point_pvd_at(handler, host);
-                        self.lent = Some(own);
-                        interrupt(host);
+                        let handler = host.read(NMI_VECTOR, Width::W32).unwrap_or(0);
+                        self.lead_pvd_to(handler, host);
                     }
                 }
                 Mishap::DmaStalls => {
@@ -115,9 +121,16 @@ impl Mishaps {
                 }
                 Mishap::CoreHangs => host.hold(true),
                 Mishap::PowerFails(words) => flash.cut_power_after(words),
-                Mishap::BridgeIsOff(is_off) => Wires::new(board, now).bridge_fault(is_off),
+                Mishap::BridgeIsOff(is_off) => Wires::new(board, now).pull(BRIDGE_FAULT, is_off),
             }
         }
+    }
+
+    /// Raises the voltage detector's interrupt with another handler.
+    fn lead_pvd_to(&mut self, handler: u64, host: &mut dyn Host) {
+        self.lent = host.read(PVD_VECTOR, Width::W32).ok();
+        point_pvd_at(handler, host);
+        interrupt(host);
     }
 }
 

@@ -14,15 +14,19 @@ use rigless::soc::{Error, Width};
 use rigless::time::VirtualNanos;
 use tenax_hal_shim::channel::CODE_MAX;
 
-use super::flash::MemoryMap;
+use super::Options;
+use super::flash::{MemoryMap, OPTCR, OPTKEYR};
 use super::line::Line;
 
 const HSE_HZ: u64 = 8_000_000;
-const SUPPLY_MV: u32 = 3_300;
 const CLOCK_HZ: NonZeroU64 = NonZeroU64::new(100_000_000).expect("not zero");
 const REFCLK_DIVIDER: NonZeroU32 = NonZeroU32::new(8).expect("not zero");
 /// Interrupt priority bits (RM0383, section 10.1).
 const PRIORITY_BITS: u8 = 4;
+/// Option bytes as delivered but for the brown-out level, unlocked, and the keys; bit 1 programs them (RM0383, section 3.8).
+const OPTIONS: u64 = 0x0FFF_AAE0;
+const OPTION_KEYS: [u64; 2] = [0x0819_2A3B, 0x4C5D_6E7F];
+const RCC_CIR: u64 = 0x4002_380C;
 const TIM3_CNT: u64 = 0x4000_0424;
 /// The serial port of the ST-LINK, USART2, in the order of the chip's ports.
 const USART2: usize = 1;
@@ -37,14 +41,21 @@ pub struct Nucleo {
 }
 
 impl Nucleo {
-    pub fn new(instructions_per_second: NonZeroU64) -> Result<Self, Error> {
+    pub fn new(options: &Options) -> Result<Self, Error> {
         let mut chip = Stm32f427::new()?;
         chip.usart[USART2].attach(Line::default());
         chip.rcc.attach_crystals(HSE_HZ, 0);
-        chip.set_supply(SUPPLY_MV);
+        chip.set_supply(options.supply_mv);
         // The model's word is `input * 4095 / reference`: with this reference, an input is a code and nothing is rounded.
         chip.adc[0].set_reference(u32::from(CODE_MAX));
-        Ok(Self { memory: MemoryMap::new(&chip)?, chip, instructions_per_second })
+        let (memory, instructions_per_second) = (MemoryMap::new(&chip)?, options.instructions_per_second);
+        let mut board = Self { memory, chip, instructions_per_second };
+        let options = OPTIONS | u64::from(options.brown_out_level) << 2;
+        let unlocks = OPTION_KEYS.map(|key| (OPTKEYR, key));
+        for (register, value) in unlocks.into_iter().chain([(OPTCR, options), (OPTCR, options | 1 << 1)]) {
+            board.poke(VirtualNanos(0), register, value);
+        }
+        Ok(board)
     }
 
     /// A register as it stands, 0 if it is none.
@@ -79,6 +90,8 @@ impl Nucleo {
             let (registers, _) = self.chip.bus_mut().drive(now, slot);
             registers.set(Register::Csr, registers.get(Register::Csr) | csr::BORRSTF.mask());
         }
+        // Any write lets the model take its registers up: the start of the watchdog's oscillator would put back the flags it knows.
+        self.poke(now, RCC_CIR, 0);
     }
 }
 

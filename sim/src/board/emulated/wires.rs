@@ -11,13 +11,15 @@ use tenax_hal_shim::motor::{Duty, MotorDrive};
 use super::nucleo::Nucleo;
 
 const GPIOA_MODER: u64 = 0x4002_0000;
+const GPIOA_ODR: u64 = 0x4002_0014;
+const GPIOA_AFRH: u64 = 0x4002_0024;
 const GPIOC_PUPDR: u64 = 0x4002_080C;
 const GPIOB_ODR: u64 = 0x4002_0414;
 const TIM1_CCER: u64 = 0x4001_0020;
 const TIM1_CNT: u64 = 0x4001_0024;
 const TIM1_ARR: u64 = 0x4001_002C;
 const TIM1_CCR1: u64 = 0x4001_0034;
-const TIM1_CCR2: u64 = 0x4001_0038;
+const TIM1_CCR4: u64 = 0x4001_0040;
 const TIM1_BDTR: u64 = 0x4001_0044;
 const GPIOB_MODER: u64 = 0x4002_0400;
 const GPIOB_AFRL: u64 = 0x4002_0420;
@@ -29,7 +31,7 @@ const ADC1_CR2: u64 = 0x4001_2008;
 
 const BDTR_MOE: u32 = 1 << 15;
 const CCER_CC1E: u32 = 1;
-const CCER_CC2E: u32 = 1 << 4;
+const CCER_CC4E: u32 = 1 << 12;
 const CR1_CEN: u32 = 1;
 const CR2_ADON: u32 = 1;
 const CR2_EXTSEL: u32 = 0xF << 24;
@@ -38,8 +40,14 @@ const CR2_EXTEN: u32 = 0x3 << 28;
 const CR2_SWSTART: u32 = 1 << 30;
 const PULL_UP: u32 = 0b01;
 const PULL_DOWN: u32 = 0b10;
+const MODER_OUTPUT: u32 = 0b01;
 const MODER_ALTERNATE: u32 = 0b10;
+const AF_TIM1: u32 = 1;
 const AF_TIM4: u32 = 2;
+
+/// Pins of port C: the button's, and the bridge's nFAULT.
+pub const BUTTON: u32 = 13;
+pub const BRIDGE_FAULT: u32 = 8;
 
 pub struct Wires<'a> {
     board: &'a mut Nucleo,
@@ -60,14 +68,15 @@ impl<'a> Wires<'a> {
         (self.peek(GPIOB_ODR) >> 12 & 0xF) as u8
     }
 
-    /// How the bridge is driven. None: both sides at once.
+    /// How the bridge (DRV8874, table 4) drives the motor. None: it neither coasts nor drives with slow decay, so that duty is not voltage.
     pub fn motor(&mut self) -> Option<MotorDrive> {
-        let (close, open) = (self.side(8, TIM1_CCR1, CCER_CC1E), self.side(9, TIM1_CCR2, CCER_CC2E));
+        let [close, open] = [(8, TIM1_CCR1, CCER_CC1E), (11, TIM1_CCR4, CCER_CC4E)]
+            .map(|(pin, compare, enable)| self.high_permille(pin, compare, enable));
         match (close, open) {
-            (None, None) => Some(MotorDrive::Coast),
-            (Some(duty), None) => Some(MotorDrive::Close(duty)),
-            (None, Some(duty)) => Some(MotorDrive::Open(duty)),
-            (Some(_), Some(_)) => None,
+            (0, 0) => Some(MotorDrive::Coast),
+            (1_000, braked @ ..1_000) => Some(MotorDrive::Close(Duty::per_mille(1_000 - braked))),
+            (braked @ ..1_000, 1_000) => Some(MotorDrive::Open(Duty::per_mille(1_000 - braked))),
+            _ => None,
         }
     }
 
@@ -76,13 +85,19 @@ impl<'a> Wires<'a> {
         since_us - f64::from(self.peek(TIM1_CNT)) / 100.0
     }
 
-    fn side(&mut self, pin: u32, compare: u64, enable: u32) -> Option<Duty> {
-        // Most of the time the pulse is empty, and one look is enough.
-        let compare = Some(self.peek(compare)).filter(|&compare| compare > 0)?;
-        let alternate = self.peek(GPIOA_MODER) >> (2 * pin) & 0b11 == MODER_ALTERNATE;
-        let on = self.peek(TIM1_BDTR) & BDTR_MOE != 0 && self.peek(TIM1_CCER) & enable != 0;
-        let per_mille = (compare * 1_000).div_ceil(self.peek(TIM1_ARR) + 1);
-        (alternate && on).then_some(Duty::per_mille(per_mille as u16))
+    /// Part of the PWM's period in which a pin of port A is high, per mille: the bridge pulls its inputs low.
+    fn high_permille(&mut self, pin: u32, compare: u64, enable: u32) -> u16 {
+        match self.peek(GPIOA_MODER) >> (2 * pin) & 0b11 {
+            MODER_OUTPUT => 1_000 * (self.peek(GPIOA_ODR) >> pin & 1) as u16,
+            MODER_ALTERNATE => {
+                let on = self.peek(GPIOA_AFRH) >> (4 * (pin - 8)) & 0xF == AF_TIM1
+                    && self.peek(TIM1_BDTR) & BDTR_MOE != 0
+                    && self.peek(TIM1_CCER) & enable != 0;
+                let period = self.peek(TIM1_ARR) + 1;
+                if on { (self.peek(compare).min(period) * 1_000 / period) as u16 } else { 0 }
+            }
+            _ => 0,
+        }
     }
 
     pub fn vibration(&mut self) -> Duty {
@@ -103,18 +118,8 @@ impl<'a> Wires<'a> {
         }
     }
 
-    /// Presses or releases the button on PC13.
-    pub fn button(&mut self, is_down: bool) {
-        self.pull(13, is_down);
-    }
-
-    /// Pulls the bridge's nFAULT on PC8 low, or lets it go.
-    pub fn bridge_fault(&mut self, is_low: bool) {
-        self.pull(8, is_low);
-    }
-
-    /// Pulls a pin of port C: `rigless` lets nobody but a peripheral drive a pin, and one that nothing drives reads its pull.
-    fn pull(&mut self, pin: u32, is_low: bool) {
+    /// Pulls a pin of port C low, or lets it go: `rigless` lets nobody but a peripheral drive a pin, and one that nothing drives reads its pull.
+    pub fn pull(&mut self, pin: u32, is_low: bool) {
         let at = 2 * pin;
         let pulls = self.peek(GPIOC_PUPDR) & !(0b11 << at) | if is_low { PULL_DOWN } else { PULL_UP } << at;
         if pulls != self.peek(GPIOC_PUPDR) {

@@ -21,7 +21,7 @@ use super::coupling::Coupling;
 use super::flash::FlashArray;
 use super::mishaps::Mishaps;
 use super::nucleo::Nucleo;
-use super::wires::Wires;
+use super::wires::{BUTTON, Wires};
 use crate::board::TickCost;
 use crate::image::symbols::Symbols;
 use tenax_frames::link::Encoder;
@@ -29,6 +29,8 @@ use tenax_frames::link::Encoder;
 const SCAN_NS: u64 = 1_000_000_000 / SCAN_HZ as u64;
 const SEEK_NS: u64 = 5_000;
 const BOOT_NS: u64 = 3_000_000_000;
+/// A board whose supply is low waits for it, and does not scan: the world begins without it.
+const WAITS_NS: u64 = 300_000_000;
 /// Scans after the plant's last, so that what they led to comes up the line.
 const DRAIN_SCANS: u32 = 64;
 /// Scans between two reports, so that a line that is served live is late by no more than a slow frame.
@@ -55,6 +57,7 @@ pub struct World {
     drained: u32,
     pulses: u64,
     stepped_at: Option<VirtualNanos>,
+    begins_ns: u64,
     codes: Scan,
     encoder: Encoder,
     sent: Receiver,
@@ -91,6 +94,7 @@ impl World {
             drained: 0,
             pulses: 0,
             stepped_at: None,
+            begins_ns: if options.supply_mv < 3_030 { WAITS_NS } else { u64::MAX },
             codes: Scan::default(),
             encoder: Encoder::default(),
             sent: Receiver::new(),
@@ -130,7 +134,7 @@ impl World {
         if self.scanned < self.scans {
             let Some(drive) = wires.motor() else {
                 self.broken = Some(anyhow!(
-                    "the image drove both sides of the motor bridge at {} s: on a real board this shorts the supply",
+                    "the motor bridge neither coasts nor drives with slow decay at {} s: duty is not the motor's voltage",
                     seconds(stop.at)
                 ));
                 return None;
@@ -151,7 +155,7 @@ impl World {
             self.drained += 1;
         }
         wires.put(&self.codes);
-        wires.button(plant.button());
+        wires.pull(BUTTON, plant.button());
         if pulse {
             wires.trigger();
         }
@@ -234,7 +238,7 @@ impl Driver<Nucleo> for World {
         let pulses = session.board_mut().trigger_pulses(stop.at);
         let pulse = pulses > self.pulses;
         self.pulses = pulses;
-        let due = self.stepped_at.is_some_and(|at| stop.at.0 >= at.0 + SCAN_NS);
+        let due = stop.at.0 >= self.stepped_at.map_or(self.begins_ns, |at| at.0 + SCAN_NS);
         if self.stepped_at.is_none() && pulse {
             self.executed = Some((stop.at, stop.instruction_count));
         }
