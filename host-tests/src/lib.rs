@@ -238,6 +238,7 @@ impl Bench {
         self.samples.record(frame);
         if frame.slot() == slot_of(Job::Think) {
             self.fingertip.think(&self.samples);
+            self.fingertip.listen();
         }
         self.slows.extend(self.fingertip.take_slow());
         while let Some(event) = self.fingertip.next_event() {

@@ -155,6 +155,11 @@ impl Fingertip {
         }
     }
 
+    /// Likewise, of the films.
+    pub fn listen(&mut self) {
+        self.senses.listen(&self.config, &mut self.journal);
+    }
+
     fn feel(&mut self) {
         let held = self.senses.forces.filter(|_| matches!(self.senses.grip, Grip::Holds(_)));
         let slides = self.reflex.slides(self.mode);

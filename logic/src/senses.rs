@@ -282,17 +282,21 @@ impl Senses {
         }
     }
 
-    /// Steady sliding, cut wires and select lines. Call it once a slow frame, always after the same tick.
+    /// Cut wires and select lines. Call it once a slow frame, always after the same tick.
     #[inline(never)]
     pub fn think(&mut self, config: &Config, samples: &LastSamples, journal: &mut Journal) {
-        // A muscle's spectrum, twice in 64 cycles, leaves no time for the quadrants and the films' noise.
+        // A muscle's spectrum, twice in 64 cycles, leaves no time for the quadrants.
         if !self.muscles().has_window() {
             self.blame(config, journal);
-            let (empty, still) = (self.unloaded, self.still_frames > frames(100));
-            self.detector.learn_noise(&config.vibration, empty, still);
         }
         self.select_lines.look(&samples.switch_b);
+    }
+
+    /// Noise of the films and steady sliding. Call it once a slow frame, in another tick than [`think`](Self::think).
+    #[inline(never)]
+    pub fn listen(&mut self, config: &Config, journal: &mut Journal) {
         self.films.slow(|film, change| report(journal, PVDF + film, Some(change)));
+        self.detector.learn_noise(&config.vibration, self.unloaded);
         let forces = self.forces.filter(|_| matches!(self.grip, Grip::Holds(_)));
         self.detector.slow(&Hand { forces, wearer: self.gate.is_active(), striking: self.striking });
     }

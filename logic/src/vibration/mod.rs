@@ -177,10 +177,10 @@ impl VibrationDetector {
         }
     }
 
-    /// Call it in most slow frames.
+    /// Call it once a slow frame.
     #[inline(never)]
-    pub fn learn_noise(&mut self, config: &VibrationConfig, empty_hand: bool, still: bool) {
-        self.noise.step(&self.films, config.s1, empty_hand, still);
+    pub fn learn_noise(&mut self, config: &VibrationConfig, empty_hand: bool) {
+        self.noise.step(&self.films, config.s1, empty_hand);
         self.mains.tune(config.mains_60_hz ^ self.noise.other_mains);
     }
 

@@ -10,8 +10,6 @@ use super::film::Film;
 const BLOCK_FRAMES: u8 = 16;
 /// Least threshold of S1, in floors.
 const FLOORS: i32 = 3;
-/// Threshold of a hand that stands still, in floors, at most the one that is set and at least 2/5 of it.
-const STILL_FLOORS: i32 = 8;
 /// Low-passes of what the empty hand hears, in slow frames, log2: up, and down where it is quieter by half.
 const EMPTY_UP_SHIFT: u32 = 3;
 const EMPTY_DOWN_SHIFT: u32 = 6;
@@ -48,7 +46,7 @@ pub struct Noise {
 
 impl Noise {
     /// One slow frame. `set`: S1's threshold in the settings, samples.
-    pub fn step(&mut self, films: &[Film; PVDF_COUNT], set: u16, empty_hand: bool, still: bool) {
+    pub fn step(&mut self, films: &[Film; PVDF_COUNT], set: u16, empty_hand: bool) {
         let set = i32::from(set) << Q;
         let on = set + self.raised;
         self.frames = (self.frames + 1) % BLOCK_FRAMES;
@@ -86,8 +84,7 @@ impl Noise {
         if loudest < self.empty / 2 {
             self.empty -= self.empty >> EMPTY_DOWN_SHIFT;
         }
-        let least = if still { (STILL_FLOORS * floor).max(set / 5 * 2).min(set) } else { set };
-        self.raised = least.max(FLOORS * floor).max(2 * self.empty) - set;
+        self.raised = set.max(FLOORS * floor).max(2 * self.empty) - set;
         if self.frames == 0 {
             self.unexplained = if floor > set / 2 && hum < floor { self.unexplained + 1 } else { 0 };
             if self.unexplained == OTHER_AFTER {

@@ -12,7 +12,7 @@ pub struct VibrationConfig {
 
 settings! {
     VibrationConfig:
-    /// S1: threshold of a PVDF channel's vibration envelope above which it reports slip; down to 2/5 where a still hand is quiet
+    /// S1: threshold of a PVDF channel's vibration envelope above which it reports slip
     1 S1 "s1-mv" "mV" [20, 1_500] = 100 => Mv(s1);
     /// Least vibration above the slip band that counts as an impact
     6 ImpactLevel "impact-level-mv" "mV" [10, 300] = 20 => Mv(impact_level);

@@ -30,7 +30,7 @@ fn seen(is_60_hz: impl Fn(f64) -> bool, for_s: f64, heard: impl Fn(f64) -> f64) 
             });
             let vibration = detector.process(&config, &samples, None);
             if n.is_multiple_of(FRAME_HZ / SLOW_HZ) {
-                detector.learn_noise(&config, false, false);
+                detector.learn_noise(&config, false);
             }
             let sum = detector.envelopes().iter().map(|&e| f64::from(e) / 65_536.0).sum::<f64>();
             (sum / PVDF_COUNT as f64, vibration)
