@@ -84,6 +84,8 @@ pub struct Senses {
     open_and_loaded: u16,
     frames_lost: u32,
     films_usable: bool,
+    /// Noisy films that have been reported.
+    noisy_told: u16,
     lost: [bool; 3],
     pub vibration: Vibration,
     pub forces: Option<Forces>,
@@ -275,10 +277,9 @@ impl Senses {
         let trusts = self.films.check(pvdf, |film, change| report(journal, PVDF + film, Some(change)));
         self.films_usable =
             trusts.is_none_or(|trusts| trusts[..films].iter().any(|&trust| trust != Trust::None));
-        let masked = self.vibration.masked;
         self.vibration = self.detector.process(&config.vibration, pvdf, trusts.as_ref());
-        if self.vibration.masked != masked {
-            self.mask(masked ^ self.vibration.masked, journal);
+        if self.vibration.masked != self.noisy_told {
+            self.tell_noisy(journal);
         }
     }
 
@@ -332,13 +333,14 @@ impl Senses {
         }
     }
 
+    /// One film a tick: a tick has no time for twelve reports.
     #[inline(never)]
-    fn mask(&self, changed: u16, journal: &mut Journal) {
-        for film in (0..PVDF_COUNT).filter(|film| changed >> film & 1 != 0) {
-            let lost = self.vibration.masked >> film & 1 != 0;
-            let change = if lost { Change::Lost(Reason::Noisy) } else { Change::Back };
-            report(journal, PVDF + film, Some(change));
-        }
+    fn tell_noisy(&mut self, journal: &mut Journal) {
+        let film = (self.vibration.masked ^ self.noisy_told).trailing_zeros() as usize;
+        self.noisy_told ^= 1 << film;
+        let lost = self.vibration.masked >> film & 1 != 0;
+        let change = if lost { Change::Lost(Reason::Noisy) } else { Change::Back };
+        report(journal, PVDF + film, Some(change));
     }
 
     fn on_switch_a(&mut self, config: &Config, channel: usize, sample: u16, journal: &mut Journal) {
