@@ -2,6 +2,7 @@
 
 pub mod array;
 pub mod default_scene;
+pub mod drawn;
 pub mod learn;
 pub mod people;
 pub mod recordings;

@@ -7,7 +7,9 @@ use tenax_frames::tool::{out, progress::with_bar, workspace};
 use tenax_sim::image;
 use tenax_sim::jobs::Jobs;
 
-use crate::check::{self, Bar, Group, Verdict, array, default_scene, learn, people, recordings, wearer};
+use crate::check::{
+    self, Bar, Group, Verdict, array, default_scene, drawn, learn, people, recordings, wearer,
+};
 
 /// Measure every promise of the project, one line each; fails if one is not kept
 #[derive(Debug, clap::Args)]
@@ -33,6 +35,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     groups.extend(recordings::groups(&data, &board)?);
     groups.push(Box::new(|| people::bars(&data.join("myobock"))));
     groups.push(Box::new(learn::bars));
+    groups.push(Box::new(drawn::bars));
     groups.push(Box::new(array::bars));
     let bars: Vec<Vec<Bar>> = with_bar("check", |progress| {
         let jobs = Jobs::new(groups.len(), progress);
