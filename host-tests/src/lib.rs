@@ -238,6 +238,7 @@ impl Bench {
         self.samples.record(frame);
         if frame.slot() == slot_of(Job::Think) {
             self.fingertip.think(&self.samples);
+            self.fingertip.listen();
         }
         self.slows.extend(self.fingertip.take_slow());
         while let Some(event) = self.fingertip.next_event() {
@@ -259,9 +260,9 @@ impl Bench {
         (0..frames).map(give).collect()
     }
 
-    /// Voltage of a film that hears mains of 50 Hz, mV.
-    pub fn hum(&mut self, film: usize, mv: f64) {
-        let phase = f64::from(self.frames) * 50.0 / 2_000.0 * TAU;
+    /// Voltage of a film that hears a tone, mV.
+    pub fn hum(&mut self, film: usize, hz: f64, mv: f64) {
+        let phase = f64::from(self.frames) * hz / 2_000.0 * TAU;
         self.pins_mv[film] = f64::from(CHANNELS[PVDF].rest_mv) + mv * phase.sin();
     }
 

@@ -137,8 +137,8 @@ fn a_line_that_coasts_or_closes_slowly_silences_no_reflex() {
         bench.muscles(muscle_mv, 40.0);
         bench.run(600);
         bench.slows.clear();
-        bench.vibration_mv = 800.0;
-        for _ in 0..40 {
+        for n in 0..40 {
+            bench.vibration_mv = if n % 4 < 2 { 800.0 } else { 0.0 };
             let _ = bench.fingertip.command(&Down::Drive { drive, hold_ms: 100 });
             bench.run(200);
         }

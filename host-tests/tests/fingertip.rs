@@ -1,5 +1,6 @@
 //! All tests of the logic in closed loops, as one program. `--test fingertip wearer` runs those of a file.
 
+mod account;
 mod adversary;
 mod array;
 mod behaviours;

@@ -48,21 +48,27 @@ fn every_pulse_is_followed_by_its_reasons() {
 #[test]
 fn one_humming_film_closes_the_hand_once_and_is_masked() {
     const FILM: usize = PVDF + 4;
-    let mut bench = Bench::holding(33);
-    for _ in 0..40_000 {
-        bench.hum(FILM, 200.0);
-        bench.step();
+    // Mains, another tone, and a contact that crackles every 150 ms.
+    for (hz, on_of_300) in [(50.0, 300), (80.0, 300), (80.0, 150)] {
+        let mut bench = Bench::holding(33);
+        for n in 0..40_000 {
+            bench.hum(FILM, hz, if n % 300 < on_of_300 { 200.0 } else { 0.0 });
+            bench.step();
+        }
+        bench.hum(FILM, hz, 0.0);
+        let closed = bench.by_reflex();
+        assert!((1..=600).contains(&closed), "{closed} ticks of 40 000");
+        let noisy = bench.lost(FILM).iter().filter(|(_, reason)| *reason == Reason::Noisy).count();
+        assert_eq!(noisy, 1, "{hz} Hz");
+        // The others still feel slip.
+        bench.slows.clear();
+        bench.vibration_mv = 400.0;
+        bench.run(400);
+        assert!(bench.by_reflex() > 20);
+        bench.vibration_mv = 0.0;
+        bench.run(24_000);
+        assert_eq!(bench.count(EventKind::Fault(Fault::SensorBack { channel: FILM as u8 })), 1);
     }
-    bench.hum(FILM, 0.0);
-    let closed = bench.by_reflex();
-    assert!((1..=600).contains(&closed), "{closed} ticks of 40 000");
-    let noisy = bench.lost(FILM).iter().filter(|(_, reason)| *reason == Reason::Noisy).count();
-    assert_eq!(noisy, 1);
-    // The others still feel slip.
-    bench.slows.clear();
-    bench.vibration_mv = 400.0;
-    bench.run(400);
-    assert!(bench.by_reflex() > 20);
 }
 
 // Shows R6.

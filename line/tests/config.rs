@@ -1,5 +1,10 @@
 //! `tenax config` against a served board: every setting is set, read back, exported, imported and reset.
 
+use std::io::{self, Read, Write};
+use std::net::{Shutdown, TcpListener, TcpStream};
+use std::thread;
+
+use tenax_frames::link::Client;
 use tenax_logic::setting::SettingId;
 
 use crate::serving::{tenax, trusting};
@@ -42,5 +47,88 @@ fn every_setting_is_set_read_back_exported_imported_and_reset() {
     assert!(config(&["set", "line-trusted-flag=0"]).0);
     let (done, _, error) = config(&["set", "s1-mv=120"]);
     assert!(!done && error.contains("nobody at the hand has consented"), "{error}");
+    served.end();
+}
+
+#[test]
+fn an_import_is_all_or_nothing_and_two_clients_get_their_own_answers() {
+    let served = trusting();
+    let config = |args: &[&str]| tenax(&[&["config", "--port", &served.place], args].concat());
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("settings.toml");
+    // The last two are refused, for reasons of their own; what came before them is set back.
+    std::fs::write(&file, "s2-permille = 250\ns1-mv = 5000\nsettle-ms = -7\n").unwrap();
+    let (done, _, error) = config(&["import", file.to_str().unwrap()]);
+    assert!(!done && error.contains("s1-mv = 5000 is refused: it has to be 20 to 1500"), "{error}");
+    assert!(error.contains("settle-ms = -7 is refused") && error.contains("Nothing is changed"), "{error}");
+    assert_eq!(config(&["get", "s2-permille"]).1, "300\n");
+    // Its own export changes nothing, and is taken.
+    assert!(config(&["export", file.to_str().unwrap()]).0);
+    assert!(config(&["import", file.to_str().unwrap()]).0);
+
+    let names = ["s1-mv", "s2-permille", "settle-ms", "motor-limit-ma"];
+    let expected = names.map(|name| config(&["get", name]).1);
+    assert!((0..4).all(|n| !expected[..n].contains(&expected[n])), "{expected:?}");
+    thread::scope(|scope| {
+        for (name, expected) in names.iter().zip(&expected) {
+            let config = &config;
+            scope.spawn(move || {
+                (0..6).for_each(|_| assert_eq!(&config(&["get", name]).1, expected, "{name}"))
+            });
+        }
+        // In one process, too.
+        for name in names {
+            let (id, place) = (SettingId::by_name(name).unwrap(), &served.place);
+            scope.spawn(move || {
+                let mut client = Client::open(&place.parse().unwrap()).unwrap();
+                let first = client.setting(id).unwrap();
+                (0..100).for_each(|_| assert_eq!(client.setting(id).unwrap(), first, "{name}"));
+            });
+        }
+    });
+    served.end();
+}
+
+/// A line to the place that ends after so many commands.
+fn ends_after(place: &str, commands: usize) -> String {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let (own, place) = (listener.local_addr().unwrap(), place.trim_start_matches("tcp:").to_owned());
+    thread::spawn(move || {
+        let mut near = listener.accept().unwrap().0;
+        let mut far = TcpStream::connect(place).unwrap();
+        let (mut up, mut out) = (far.try_clone().unwrap(), near.try_clone().unwrap());
+        thread::spawn(move || io::copy(&mut up, &mut out));
+        let (mut byte, mut left) = ([0], commands);
+        while left > 0 && near.read(&mut byte).unwrap_or(0) == 1 {
+            far.write_all(&byte).unwrap();
+            left -= usize::from(byte == [0]);
+        }
+        near.shutdown(Shutdown::Both).unwrap();
+    });
+    format!("tcp:{own}")
+}
+
+#[test]
+fn a_line_that_ends_within_an_import_leaves_nothing_unsaid() {
+    let served = trusting();
+    let wanted = ["s1-mv=120", "s2-permille=250", "settle-ms=70", "motor-limit-ma=900"];
+    let values = || {
+        wanted.map(|own| tenax(&["config", "--port", &served.place, "get", own.split('=').next().unwrap()]).1)
+    };
+    let before = values();
+    let mut changed = 0;
+    for commands in 3..=11 {
+        let port = ends_after(&served.place, commands);
+        let (done, _, error) = tenax(&[&["config", "--port", &port, "set"][..], &wanted].concat());
+        // What was on its way is there.
+        thread::sleep(std::time::Duration::from_millis(100));
+        for ((now, before), own) in values().iter().zip(&before).zip(wanted) {
+            let is_told = error.contains(&own.replace('=', " = "));
+            assert!(!done && (now == before || is_told), "{own} is {now} after {commands} commands: {error}");
+            changed += usize::from(now != before);
+        }
+        assert!(tenax(&["config", "--port", &served.place, "reset", "--all"]).0);
+    }
+    assert!(changed > 5, "{changed} settings were left changed: it ends too early");
     served.end();
 }

@@ -13,3 +13,4 @@ mod selftest;
 mod served;
 mod serving;
 mod tables;
+mod whole;

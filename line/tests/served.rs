@@ -39,7 +39,7 @@ fn serve(options: Options, duration_s: f64, visit: impl FnOnce(&[Target]) + Send
         let visitor = scope.spawn(move || visit(&places));
         let mut run = Run::default();
         let live = Some(Live::new(down, Person::default()));
-        let plant = Use { live, streams_at_start: false }.of(Rest(Pins::default(), duration_s));
+        let plant = Use { live, ..Use::default() }.of(Rest(Pins::default(), duration_s));
         let began = Instant::now();
         run.summary = Board::Host.record(plant, &mut (&mut run, &mut server), &mut |_| {}).expect("a run").0;
         assert!(began.elapsed().as_secs_f64() > duration_s - 0.01, "never faster than real time");

@@ -56,7 +56,7 @@ impl Serving {
         let run = thread::spawn(move || {
             loop {
                 let live = Live::new(down.clone(), runs.clone());
-                let line = Use { live: Some(live), streams_at_start: false };
+                let line = Use { live: Some(live), ..Use::default() };
                 scene_alone(&file, 1, &Board::Host, line, &mut server).unwrap();
                 if !runs.lets_go() || ends.load(Relaxed) {
                     return server.close();

@@ -29,7 +29,8 @@ fn the_picture_has_the_tables_pins() {
 
 /// Topics and, behind the mark, fields of a recording of every stream.
 fn paths(mark: char) -> BTreeSet<String> {
-    let plant = Use { live: None, streams_at_start: true }.of(World::new(&load_scene("rig").unwrap(), 1));
+    let plant =
+        Use { streams_at_start: true, ..Use::default() }.of(World::new(&load_scene("rig").unwrap(), 1));
     let (run, _) = Board::Host.run(plant, &mut |_| {}).unwrap();
     let mut inbox = Inbox::default();
     let messages = run.line.iter().filter_map(|&byte| inbox.push(byte)).flatten();

@@ -66,8 +66,6 @@ pub struct Description {
 
 pub trait Detector {
     const ID: DetectorId;
-    /// Consecutive slow frames in which it may report slip of an empty hand without being ignored.
-    const IMPLAUSIBLE_AFTER: u16 = 0;
     type Config;
 
     /// None: the last report stands.
@@ -125,17 +123,17 @@ impl Record {
         self.decided_at[id as usize] = frame;
     }
 
-    fn guard(&mut self, id: DetectorId, tolerated: u16, sensed: &Sensed<'_>) {
+    fn guard(&mut self, id: DetectorId, sensed: &Sensed<'_>) {
         let says = self.slip.or(self.incipient).contains(id);
         let guard = &mut self.guards[id as usize];
-        guard.step(sensed.unloaded, says, tolerated);
+        guard.step(sensed.unloaded, says);
         self.ignored = self.ignored.with(id, guard.is_ignored());
     }
 
     #[inline(always)]
     fn guard_array(&mut self, sensed: &Sensed<'_>) {
         let id = DetectorId::Mlp;
-        self.guard(id, ShippedDetector::IMPLAUSIBLE_AFTER, sensed);
+        self.guard(id, sensed);
         self.disturbance.step(sensed.vibration.impact, self.slip.contains(id));
         self.ignored = self.ignored.with(id, self.ignored.contains(id) || self.disturbance.explains_it());
     }
@@ -149,10 +147,6 @@ fn by_two_senses(slip: DetectorSet) -> bool {
 
 const fn id_of<D: Detector>(_: &D) -> DetectorId {
     D::ID
-}
-
-const fn tolerance_of<D: Detector>(_: &D) -> u16 {
-    D::IMPLAUSIBLE_AFTER
 }
 
 impl Detectors {
@@ -173,9 +167,10 @@ impl Detectors {
     #[inline(never)]
     fn guard_others(&mut self, config: &Config, sensed: &Sensed<'_>) {
         for_each_detector!(self, config, |detector, _own| {
-            let (id, tolerated) = (id_of(detector), tolerance_of(detector));
-            if id != DetectorId::Mlp {
-                self.record.guard(id, tolerated, sensed);
+            let id = id_of(detector);
+            // S1's threshold knows what the empty hand hears, and injected reports are never implausible.
+            if !matches!(id, DetectorId::S1 | DetectorId::Injected | DetectorId::Mlp) {
+                self.record.guard(id, sensed);
             }
         });
     }

@@ -31,6 +31,9 @@ use crate::store::keeper::Keeper;
 use crate::store::record::Record;
 use crate::stream::Stream;
 
+/// Slot of the films' slow work: `think` has no time left for it.
+const LISTEN_SLOT: u8 = slot_of(Job::Save) + 1;
+
 #[derive(Clone, Debug)]
 pub struct Device {
     pub fingertip: Fingertip,
@@ -94,6 +97,9 @@ impl Device {
         // After the drive, so that the motor does not wait.
         if frame.slot() == slot_of(Job::Think) {
             self.fingertip.think(&self.samples);
+        }
+        if frame.slot() == LISTEN_SLOT {
+            self.fingertip.listen();
         }
     }
 

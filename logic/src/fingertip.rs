@@ -155,6 +155,11 @@ impl Fingertip {
         }
     }
 
+    /// Likewise, of the films.
+    pub fn listen(&mut self) {
+        self.senses.listen(&self.config, &mut self.journal);
+    }
+
     fn feel(&mut self) {
         let held = self.senses.forces.filter(|_| matches!(self.senses.grip, Grip::Holds(_)));
         let slides = self.reflex.slides(self.mode);
@@ -243,7 +248,7 @@ impl Fingertip {
         self.step_mode(verdicts, grip);
         let wishes = Wishes {
             wearer_active: self.senses.gate.is_active(),
-            wearer: self.senses.gate.wish(&self.config.gate),
+            wearer: self.senses.gate.wish(&self.config.gate, &self.reflex.account),
             link: self.link_drive(),
             reflex: self.reflex.drive(&self.config.grip, self.mode),
             behaviour,
@@ -259,6 +264,9 @@ impl Fingertip {
         let allowed = self.senses.motor.allows(asked);
         let (drive, source) = if allowed { (asked, source) } else { Default::default() };
         self.drive = drive;
+        let driven = source == DriveSource::Wearer;
+        let refused = self.reflex.account.step(&self.senses.gate, wishes.wearer, driven);
+        self.senses.muscles_mut().refuse(refused);
         self.reflex.tick(self.mode, grip);
         self.took_back |= source == DriveSource::Reflex && drive.opens();
         if let MotorDrive::Close(duty) = drive {

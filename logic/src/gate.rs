@@ -4,19 +4,14 @@
 
 use tenax_hal_shim::motor::{Duty, MotorDrive};
 
+use crate::account::Account;
 use crate::emg::Verdict;
 use crate::emg::decide::Wish;
 use crate::emg::settings::GateConfig;
 
-/// Largest travel of an unproven opening, frames times per mille of duty: 0.7 mm with a gripper of 120 mm/s.
-const OPENS_AT_MOST: u32 = 11_600;
-/// Longest unproven closing, frames: 92 ms.
-const CLOSES_AT_MOST: u32 = 184;
 /// Longest opening of a release, frames: 4 s, the whole range at the slowest duty; and once nothing is felt.
 const RELEASE_FRAMES: u32 = 8_000;
 const RELEASED_FRAMES: u32 = 1_000;
-/// Frames of known rest that renew both limits: 4 s.
-const RENEWED_AFTER: u32 = 8_000;
 
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Gate {
@@ -25,10 +20,6 @@ pub struct Gate {
     hold: u32,
     known_frames: u32,
     half_known_frames: u32,
-    rest_frames: u32,
-    /// Travel of unproven openings and frames of unproven closings since the limits were renewed.
-    opened: u32,
-    closed: u32,
     empty: bool,
     release: u32,
 }
@@ -54,6 +45,10 @@ impl Gate {
         self.release = if closes { 0 } else { self.release.saturating_sub(frames).min(most) };
     }
 
+    pub const fn verdict(&self) -> &Verdict {
+        &self.verdict
+    }
+
     pub const fn is_releasing(&self) -> bool {
         self.release > 0
     }
@@ -68,20 +63,11 @@ impl Gate {
         self.known_frames = if self.is_known() { self.known_frames.saturating_add(1) } else { 0 };
         self.half_known_frames =
             if self.verdict.half_known { self.half_known_frames.saturating_add(1) } else { 0 };
-        self.rest_frames =
-            if self.is_known() && !self.verdict.active { self.rest_frames.saturating_add(1) } else { 0 };
         self.empty = empty;
-        if self.is_trusted() || self.rest_frames >= RENEWED_AFTER {
-            (self.opened, self.closed) = (0, 0);
-        }
-        match self.wish(config) {
-            MotorDrive::Coast => {}
-            MotorDrive::Open(duty) => self.opened += u32::from(duty.as_per_mille()),
-            MotorDrive::Close(_) => self.closed += 1,
-        }
     }
 
-    const fn is_trusted(&self) -> bool {
+    /// A proven wish, or nothing to drop or crush.
+    pub const fn is_trusted(&self) -> bool {
         self.verdict.proven || self.empty
     }
 
@@ -120,13 +106,13 @@ impl Gate {
     }
 
     /// Faster for a stronger contraction; an unproven opening at the slowest duty.
-    pub fn wish(&self, config: &GateConfig) -> MotorDrive {
+    pub fn wish(&self, config: &GateConfig, account: &Account) -> MotorDrive {
         let trusted = self.is_trusted();
         match self.verdict.wish {
             Wish::Open if trusted => MotorDrive::Open(duty(config, self.verdict.strength_permille)),
             _ if self.release > 0 => MotorDrive::Open(duty(config, 0)),
-            Wish::Open if self.opened < OPENS_AT_MOST => MotorDrive::Open(duty(config, 0)),
-            Wish::Close if trusted || self.closed < CLOSES_AT_MOST => {
+            Wish::Open if account.may_open() => MotorDrive::Open(duty(config, 0)),
+            Wish::Close if trusted || account.may_close() => {
                 MotorDrive::Close(duty(config, self.verdict.strength_permille))
             }
             _ => MotorDrive::Coast,
@@ -152,9 +138,14 @@ mod tests {
     fn says(wish: Wish, strength_permille: u16) -> Gate {
         let mut gate = Gate::default();
         let active = wish != Wish::Rest;
-        gate.take(Verdict { wish, strength_permille, proven: active, active, known: true, half_known: true });
+        let verdict = Verdict { wish, strength_permille, proven: active, active, ..Verdict::default() };
+        gate.take(Verdict { known: true, half_known: true, ..verdict });
         gate.tick(&CONFIG, false);
         gate
+    }
+
+    fn wishes(gate: &Gate) -> MotorDrive {
+        gate.wish(&CONFIG, &Account::default())
     }
 
     #[test]
@@ -164,49 +155,23 @@ mod tests {
 
     #[test]
     fn each_wish_has_its_direction_and_the_duty_follows_its_strength() {
-        assert_eq!(says(Wish::Rest, 0).wish(&CONFIG), MotorDrive::Coast);
-        assert_eq!(says(Wish::Close, 1_000).wish(&CONFIG), MotorDrive::Close(Duty::FULL));
-        assert_eq!(says(Wish::Open, 0).wish(&CONFIG), MotorDrive::Open(Duty::per_mille(300)));
-        assert_eq!(says(Wish::Close, 500).wish(&CONFIG), MotorDrive::Close(Duty::per_mille(475)));
+        assert_eq!(wishes(&says(Wish::Rest, 0)), MotorDrive::Coast);
+        assert_eq!(wishes(&says(Wish::Close, 1_000)), MotorDrive::Close(Duty::FULL));
+        assert_eq!(wishes(&says(Wish::Open, 0)), MotorDrive::Open(Duty::per_mille(300)));
+        assert_eq!(wishes(&says(Wish::Close, 500)), MotorDrive::Close(Duty::per_mille(475)));
     }
 
     #[test]
     fn activity_is_held() {
         let mut gate = says(Wish::Open, 100);
         gate.take(Verdict { known: true, half_known: true, ..Verdict::default() });
-        assert_eq!(gate.wish(&CONFIG), MotorDrive::Coast);
+        assert_eq!(wishes(&gate), MotorDrive::Coast);
         for _ in 0..399 {
             gate.tick(&CONFIG, false);
             assert!(gate.is_active());
         }
         gate.tick(&CONFIG, false);
         assert!(!gate.is_active());
-    }
-
-    #[test]
-    fn an_unproven_opening_is_slow_and_short_until_4_s_of_rest_or_an_empty_hand() {
-        let unproven =
-            Verdict { wish: Wish::Open, strength_permille: 1_000, active: true, ..Verdict::default() };
-        let mut gate = Gate::default();
-        let opened = |gate: &mut Gate, empty| {
-            gate.take(unproven);
-            let mut travel = 0;
-            for _ in 0..2_000 {
-                gate.tick(&CONFIG, empty);
-                if let MotorDrive::Open(duty) = gate.wish(&CONFIG) {
-                    travel += u32::from(duty.as_per_mille());
-                }
-            }
-            gate.take(Verdict { known: true, half_known: true, ..Verdict::default() });
-            travel
-        };
-        let first = opened(&mut gate, false);
-        assert!((OPENS_AT_MOST - 600..OPENS_AT_MOST + 600).contains(&first), "{first}");
-        (0..RENEWED_AFTER - 10).for_each(|_| gate.tick(&CONFIG, false));
-        assert_eq!(opened(&mut gate, false), 0);
-        (0..RENEWED_AFTER).for_each(|_| gate.tick(&CONFIG, false));
-        assert!(opened(&mut gate, false) > 0);
-        assert_eq!(opened(&mut gate, true), 2_000_000, "nothing to drop");
     }
 
     #[test]
@@ -235,7 +200,7 @@ mod tests {
             gate.tick(&CONFIG, empty);
             let mut frames = 0;
             while gate.is_releasing() && frames <= RELEASE_FRAMES {
-                assert_eq!(gate.wish(&CONFIG), slowly);
+                assert_eq!(wishes(&gate), slowly);
                 gate.tick(&CONFIG, empty);
                 assert!(gate.is_active(), "the reflex is silent");
                 gate.step_release(1);
@@ -244,7 +209,7 @@ mod tests {
             frames
         };
         assert_eq!((lasts(false), lasts(true)), (RELEASE_FRAMES, RELEASED_FRAMES + 1));
-        assert_eq!(gate.wish(&CONFIG), MotorDrive::Coast);
+        assert_eq!(wishes(&gate), MotorDrive::Coast);
 
         let closes = Verdict { wish: Wish::Close, active: true, known: true, ..Verdict::default() };
         for (verdict, goes_on) in [(closes, true), (Verdict { proven: true, ..closes }, false)] {
@@ -256,24 +221,6 @@ mod tests {
         gate.release(true);
         gate.release(false);
         assert!(!gate.is_releasing());
-    }
-
-    /// Not a frame more, and activity renews nothing however long it lasts.
-    #[test]
-    fn what_is_not_proven_moves_the_hand_by_its_budget_to_the_frame() {
-        let config = GateConfig { slowest_permille: 400, ..CONFIG };
-        let frames = |wish, empty| {
-            let mut gate = Gate::default();
-            gate.take(Verdict { wish, active: true, known: true, ..Verdict::default() });
-            let all = (0..2 * RENEWED_AFTER).map(|_| {
-                gate.tick(&config, empty);
-                gate.wish(&config)
-            });
-            all.filter(|drive| *drive != MotorDrive::Coast).count() as u32
-        };
-        assert_eq!(frames(Wish::Open, false), OPENS_AT_MOST / 400 - 1);
-        assert_eq!(frames(Wish::Close, false), CLOSES_AT_MOST - 1);
-        assert_eq!(frames(Wish::Close, true), 2 * RENEWED_AFTER, "nothing to crush");
     }
 
     #[test]

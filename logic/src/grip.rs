@@ -3,8 +3,8 @@
 //! A pulse ends when the missing force ([`Lacks`]) is there: by the measured force plus the travel that it
 //! does not show yet times the stiffness ([`Stiffness`]). Where that is unknown, a pulse has the set length.
 //! After a pulse against slip the object settles for longer than the motor's dead time. No pulse begins on a
-//! finger that holds nothing or is at the force ceiling; while the force is unknown, all pulses share a small
-//! budget that only the wearer can renew.
+//! finger that holds nothing or is at the force ceiling; while the force is unknown, all pulses share the blind
+//! budget of the [`Account`].
 
 pub mod lacks;
 pub mod relax;
@@ -19,6 +19,7 @@ use self::lacks::{Lacks, Slides};
 use self::relax::Relax;
 use self::settings::GripConfig;
 use self::stiffness::Stiffness;
+use crate::account::Account;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Grip {
@@ -49,7 +50,7 @@ pub struct Reflex {
     elapsed: u32,
     /// Frames since the last pulse that answered incipient slip, saturating.
     since_incipient: u32,
-    blind: u32,
+    pub account: Account,
     /// Closing spends the budget though the force is known.
     bound: bool,
     /// Load as the last pulse began, mN, and the pulses in a row that raised nothing.
@@ -69,7 +70,7 @@ impl Default for Reflex {
         Self {
             elapsed: 0,
             since_incipient: u32::MAX,
-            blind: 0,
+            account: Account::default(),
             bound: false,
             began_mn: None,
             in_vain: 0,
@@ -93,7 +94,7 @@ impl Reflex {
     }
 
     const fn has_budget(&self, config: &GripConfig) -> bool {
-        self.blind < config.blind_frames
+        self.account.blind < config.blind_frames
     }
 
     /// An electrode is lost, and a muscle might be missed: closing spends the blind budget even if the force
@@ -206,14 +207,14 @@ impl Reflex {
         }
     }
 
-    /// A muscle is active, and its wearer sees the hand.
+    /// A muscle is active: warnings that were in vain are answered anew.
     pub const fn renew(&mut self) {
-        (self.blind, self.began_mn, self.in_vain) = (0, None, 0);
+        (self.began_mn, self.in_vain) = (None, 0);
     }
 
     pub fn spend(&mut self, grip: Grip) {
         if grip == Grip::Unknown {
-            self.blind = self.blind.saturating_add(1);
+            self.account.blind = self.account.blind.saturating_add(1);
         }
     }
 
@@ -396,7 +397,7 @@ mod tests {
     }
 
     #[test]
-    fn without_a_force_the_budget_runs_out_and_the_wearer_renews_it() {
+    fn without_a_force_the_budget_runs_out_until_the_account_is_cleared() {
         let config = Config::default().grip;
         let mut reflex = Reflex::default();
         for _ in 0..config.blind_frames {
@@ -406,7 +407,7 @@ mod tests {
         assert!(!reflex.may_close(&config, Grip::Unknown));
         reflex.enter(GripMode::Slip, Grip::Unknown);
         assert!(!reflex.may_close(&config, Grip::Unknown) && !reflex.link_may_close(&config, Grip::Unknown));
-        reflex.renew();
+        reflex.account = Account::default();
         assert!(reflex.may_close(&config, Grip::Unknown));
     }
 

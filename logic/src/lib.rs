@@ -17,6 +17,7 @@
 #[cfg(test)]
 extern crate std;
 
+pub mod account;
 pub mod allowance;
 pub mod arbiter;
 pub mod arming;

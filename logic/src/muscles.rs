@@ -35,6 +35,8 @@ pub struct Muscles {
     /// Two active readings in a row that differ: a glitch or a frozen sensor is not a wish.
     confirmed: [bool; 2],
     lost: [Option<Reason>; 2],
+    /// Wish that was refused because its electrode proved nothing.
+    refused: Wish,
     uv: [Option<i32>; 2],
     model: Option<EmgModel>,
     watch: Watch,
@@ -89,10 +91,20 @@ impl Muscles {
         if n == 1 && self.lesson.is_some() {
             self.learn(journal);
         }
-        let lost = self.health[n].lost.or_else(|| reason_of(self.emg.quality(n)));
+        let opens = self.model.as_ref().map_or(1, EmgModel::opening_site);
+        let refused = self.refused == if n == opens { Wish::Open } else { Wish::Close };
+        let lost = self.health[n]
+            .lost
+            .or_else(|| reason_of(self.emg.quality(n)))
+            .or(refused.then_some(Reason::NoContact));
         if lost != self.lost[n] {
             self.tell(n, lost, journal);
         }
+    }
+
+    /// The electrode of a wish that is refused is reported as one without contact.
+    pub const fn refuse(&mut self, wish: Wish) {
+        self.refused = wish;
     }
 
     #[inline(never)]

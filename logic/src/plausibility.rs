@@ -19,21 +19,19 @@ const SILENT_FOR: u16 = 10 * SLOW_HZ as u16;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Plausibility {
     empty: u16,
-    says: u16,
     silent: u16,
     ignored: bool,
 }
 
 impl Plausibility {
-    /// One slow frame. A report of up to `tolerated` slow frames in a row is forgiven.
-    pub fn step(&mut self, unloaded: bool, says: bool, tolerated: u16) {
+    /// One slow frame.
+    pub fn step(&mut self, unloaded: bool, says: bool) {
         self.empty = if unloaded { self.empty.saturating_add(1) } else { 0 };
         if self.empty <= EMPTY_AFTER {
             return;
         }
-        self.says = if says { self.says.saturating_add(1) } else { 0 };
         self.silent = if says { 0 } else { self.silent.saturating_add(1) };
-        self.ignored = self.says > tolerated || (self.ignored && self.silent < SILENT_FOR);
+        self.ignored = says || (self.ignored && self.silent < SILENT_FOR);
     }
 
     pub const fn is_ignored(&self) -> bool {
@@ -73,7 +71,7 @@ mod tests {
     use super::*;
 
     fn after(guard: &mut Plausibility, frames: u16, unloaded: bool, says: bool) -> bool {
-        (0..frames).for_each(|_| guard.step(unloaded, says, 0));
+        (0..frames).for_each(|_| guard.step(unloaded, says));
         guard.is_ignored()
     }
 
@@ -107,17 +105,5 @@ mod tests {
         }
         disturbance.step(false, true);
         assert!(!disturbance.explains_it(), "it has outlasted what it looks back on");
-    }
-
-    #[test]
-    fn a_short_report_is_forgiven_where_it_may_be() {
-        let mut guard = Plausibility::default();
-        after(&mut guard, EMPTY_AFTER, true, false);
-        for _ in 0..16 {
-            guard.step(true, true, 16);
-        }
-        assert!(!guard.is_ignored());
-        guard.step(true, true, 16);
-        assert!(guard.is_ignored());
     }
 }

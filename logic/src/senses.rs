@@ -282,7 +282,7 @@ impl Senses {
         }
     }
 
-    /// Steady sliding, cut wires and select lines. Call it once a slow frame, always after the same tick.
+    /// Cut wires and select lines. Call it once a slow frame, always after the same tick.
     #[inline(never)]
     pub fn think(&mut self, config: &Config, samples: &LastSamples, journal: &mut Journal) {
         // A muscle's spectrum, twice in 64 cycles, leaves no time for the quadrants.
@@ -290,7 +290,13 @@ impl Senses {
             self.blame(config, journal);
         }
         self.select_lines.look(&samples.switch_b);
+    }
+
+    /// Noise of the films and steady sliding. Call it once a slow frame, in another tick than [`think`](Self::think).
+    #[inline(never)]
+    pub fn listen(&mut self, config: &Config, journal: &mut Journal) {
         self.films.slow(|film, change| report(journal, PVDF + film, Some(change)));
+        self.detector.learn_noise(&config.vibration, self.unloaded);
         let forces = self.forces.filter(|_| matches!(self.grip, Grip::Holds(_)));
         self.detector.slow(&Hand { forces, wearer: self.gate.is_active(), striking: self.striking });
     }

@@ -1,18 +1,22 @@
 """Reads a Tenax fingertip's serial line, its recordings (MCAP) and captured lines. README.md begins with examples.
 
-`message.kind` is the message's name in docs/protocol.md, `message.sequence` its number; `board.missed` counts the numbers
-that are missing, `board.bad` the frames that were no message. Types of all messages: messages.pyi.
+`message.kind` is the message's name in docs/protocol.md, `message.sequence` its number; `message.time_s` is its time in the file, which goes
+on when the board starts again, `message.host_s` when it came, s since 1970 (None in a captured line). `board.missed` counts the numbers that
+are missing, `board.bad` the frames that were no message, `board.restarts` the board's starts after the first. Types of all messages: messages.pyi.
 """
 
 from __future__ import annotations
 
 import io
+import itertools
 import os
 import socket
 import time
+import warnings
 from typing import TYPE_CHECKING, Any, Dict, Iterable, Iterator, List, Protocol
 
 from . import wire
+from .clock import Clock
 from .wire import BAUD, FRAME_HZ, Garbled
 
 if TYPE_CHECKING:
@@ -23,6 +27,7 @@ if TYPE_CHECKING:
 __all__ = ["Board", "Columns", "Garbled", "MV", "array", "open", "seconds", "states", "ticks"]
 
 FRAME_MAX = 512
+_OPENED = itertools.count()
 
 
 def seconds(frame: int) -> float:
@@ -49,7 +54,7 @@ def states(board: Iterable[messages.Up]) -> Columns:
     for slow in board:
         if slow.kind != "Slow":
             continue
-        row: dict[str, Any] = {"time_s": seconds(slow.frame), "mode": slow.mode, "s2": slow.s2_permille / 1000, "wearer_active": slow.wearer_active}
+        row: dict[str, Any] = {"time_s": _time_s(slow), "mode": slow.mode, "s2": slow.s2_permille / 1000, "wearer_active": slow.wearer_active}
         row.update({name: getattr(slow, name) for name in _MUSCLES})
         if slow.forces is not None:
             row.update({name: getattr(slow.forces, name[:-1] + "mn") / 1000 for name in _FORCES})
@@ -58,6 +63,11 @@ def states(board: Iterable[messages.Up]) -> Columns:
         for name, column in columns.items():
             column.append(row.get(name))
     return columns
+
+
+def _time_s(slow: messages.Up_Slow) -> float:
+    """Its time in the file; of a frame that was decoded alone, the board's."""
+    return getattr(slow, "time_s", seconds(slow.frame))
 
 
 _FORCES, _MUSCLES = ("fn_n", "load_n", "fx_n", "fy_n", "ft_n"), ("flexor_mv", "extensor_mv")
@@ -69,19 +79,27 @@ def ticks(board: Iterable[messages.Up]) -> Columns:
     for slow in board:
         if slow.kind == "Slow":
             for n, tick in enumerate(slow.ticks):
-                row = dict(vars(tick), time_s=seconds(slow.frame - len(slow.ticks) + 1 + n), vibration_mv=tick.vibration * MV)
+                row = dict(vars(tick), time_s=_time_s(slow) - (len(slow.ticks) - 1 - n) / FRAME_HZ, vibration_mv=tick.vibration * MV)
                 for name, column in columns.items():
                     column.append(row[name])
     return columns
 
 
 class _Line(Protocol):
+    @property
+    def came_ns(self) -> int | None: ...
     def read(self) -> bytes: ...
     def write(self, data: bytes) -> None: ...
     def close(self) -> None: ...
 
 
-class _Socket:
+class _Live:
+    @property
+    def came_ns(self) -> int:
+        return time.time_ns()
+
+
+class _Socket(_Live):
     def __init__(self, host: str, port: int) -> None:
         self.socket = socket.create_connection((host, port), timeout=3)
         self.socket.settimeout(0.1)
@@ -103,6 +121,9 @@ class _Socket:
 
 
 class _File:
+    # When the bytes that were read last came, ns since 1970.
+    came_ns: int | None = None
+
     def __init__(self, path: str) -> None:
         self.file = io.open(path, "rb")
 
@@ -120,27 +141,40 @@ class _File:
 
 
 class _Recording(_File):
-    """The topic /line of an MCAP file, through the public reader."""
+    """The topic /line of an MCAP file, chunk by chunk through the public reader: one whose end is missing has none to begin with."""
 
     def __init__(self, path: str) -> None:
-        from mcap.reader import make_reader
+        from mcap.stream_reader import StreamReader
 
         super().__init__(path)
-        self.messages = make_reader(self.file).iter_messages(topics=["/line"], log_time_order=False)
+        self.path, self.records, self.topic = path, StreamReader(self.file).records, None
+        self.truncated = False
 
     def read(self) -> bytes:
+        from mcap.exceptions import UnsupportedCompressionError
+        from mcap.records import Channel, Message
+
         try:
-            data = next(self.messages)[2].data
-        except StopIteration:
-            raise EOFError from None
-        # A protobuf message of one field of bytes: its tag, and its length in seven bits a byte.
-        start = 1
-        while data[start] & 0x80:
-            start += 1
-        return bytes(data[start + 1:])
+            for record in self.records:
+                if isinstance(record, Channel) and record.topic == "/line":
+                    self.topic = record.id
+                elif isinstance(record, Message) and record.channel_id == self.topic:
+                    self.came_ns = record.publish_time
+                    # A protobuf message of one field of bytes: its tag, and its length in seven bits a byte.
+                    start = 1
+                    while record.data[start] & 0x80:
+                        start += 1
+                    return bytes(record.data[start + 1:])
+        except Exception as error:
+            # A chunk that is cut short is an error of its compression.
+            if self.came_ns is None or isinstance(error, UnsupportedCompressionError):
+                raise
+            self.truncated = True
+            warnings.warn(f"{self.path}: its end is missing, as of a recorder that was killed; what is whole is read", stacklevel=3)
+        raise EOFError
 
 
-class _Terminal:
+class _Terminal(_Live):
     """A pseudo-terminal, or a serial port that is set up already."""
 
     def __init__(self, path: str) -> None:
@@ -168,7 +202,7 @@ class _Terminal:
         os.close(self.fd)
 
 
-class _Serial:
+class _Serial(_Live):
     def __init__(self, port: str) -> None:
         import serial
 
@@ -203,9 +237,21 @@ class Board:
     """One end of a line."""
 
     def __init__(self, line: _Line) -> None:
-        self.line, self.buffer, self.sequence = line, bytearray(), 0
+        # Commands are numbered from where no other client of the line does (line/frames/src/link/outbox.rs).
+        self.line, self.buffer, self.sequence = line, bytearray(), (os.getpid() * 40_503 + next(_OPENED) * 27_146) & 0xFFFF
         self.expected: int | None = None
         self.missed = self.bad = self.messages = 0
+        self.clock = Clock()
+
+    @property
+    def restarts(self) -> int:
+        """How often the board has started again."""
+        return self.clock.restarts
+
+    @property
+    def truncated(self) -> bool:
+        """Whether a recording's end is missing, once all of it has been read."""
+        return getattr(self.line, "truncated", False)
 
     def __enter__(self) -> Board:
         return self
@@ -224,6 +270,7 @@ class Board:
         """The messages that have come; waits a tenth of a second for the first."""
         self.buffer += self.line.read()
         messages = []
+        came_ns = self.line.came_ns
         while (end := self.buffer.find(0)) >= 0:
             frame = bytes(self.buffer[:end])
             del self.buffer[:end + 1]
@@ -238,6 +285,9 @@ class Board:
                 self.missed += (sequence - self.expected) & 0xFFFF
             self.expected = (sequence + 1) & 0xFFFF
             self.messages += 1
+            self.clock.hear(message, came_ns)
+            message.time_s = self.clock.seconds(message)
+            message.host_s = None if came_ns is None else came_ns / 1e9
             messages.append(message)
         # What is longer than any frame is none.
         if len(self.buffer) > 2 * FRAME_MAX:

@@ -14,6 +14,7 @@ from __future__ import annotations
 import argparse
 import os
 import sys
+from datetime import datetime, timezone
 from pathlib import Path
 from typing import Any, Iterable
 
@@ -61,23 +62,23 @@ def table(board: Iterable[Any]) -> pl.DataFrame:
     return frame.with_columns(pl.col(numbers).cast(pl.Float32))
 
 
-def about(path: str) -> dict[str, str]:
-    """What a recording tells of its board."""
-    from mcap.reader import make_reader
-
-    with open(path, "rb") as file:
-        return next((dict(own.metadata) for own in make_reader(file).iter_metadata() if own.name == "tenax"), {})
+def chip(message: Any) -> str | None:
+    """The chip's id, of a message that says who the board is."""
+    about = message.answer if message.kind == "Answer" else message
+    return "-".join(f"{word:08x}" for word in about.identity.chip) if about.kind == "About" else None
 
 
 def add(store: Path, recordings: list[str], hand: str | None, day: str | None) -> None:
     """Takes recordings up. One that is there already is replaced."""
     for path in recordings:
-        told = about(path) if path.lower().endswith(".mcap") else {}
-        own_hand, own_day = hand or told.get("chip"), day or told.get("began", "")[:10]
+        with tenax.open(path) as board:
+            messages = list(board)
+        came_s = next((message.host_s for message in messages if message.host_s is not None), None)
+        own_day = day or (came_s and f"{datetime.fromtimestamp(came_s, timezone.utc):%Y-%m-%d}")
+        own_hand = hand or next((own for message in messages if (own := chip(message))), None)
         if not own_hand or not own_day:
             raise SystemExit(f"{path}: the recording does not say which board and day; give --hand and --day")
-        with tenax.open(path) as board:
-            rows = table(board)
+        rows = table(messages)
         if rows.is_empty():
             raise SystemExit(f"{path}: no slow frame in it")
         folder = store / f"hand={own_hand}" / f"day={own_day}"
@@ -86,7 +87,8 @@ def add(store: Path, recordings: list[str], hand: str | None, day: str | None) -
         part = place.with_suffix(".part")
         rows.write_parquet(part, compression="zstd")
         os.replace(part, place)
-        print(f"{place}: {rows.height} slow frames, {rows.height * READING_S / 60:.1f} min")
+        end = "; the recording's end is missing" if board.truncated else ""
+        print(f"{place}: {rows.height} slow frames, {rows.height * READING_S / 60:.1f} min{end}")
 
 
 def scan(store: Path) -> pl.LazyFrame:

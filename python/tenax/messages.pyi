@@ -536,12 +536,16 @@ class Senses:
 class Up_Hello:
     kind: Literal['Hello']
     sequence: int
+    time_s: float
+    host_s: Optional[float]
     frame_hz: int
     after: Optional[Fault]
 
 class Up_Slow:
     kind: Literal['Slow']
     sequence: int
+    time_s: float
+    host_s: Optional[float]
     frame: int
     ticks: List[Tick]
     mode: GripMode
@@ -559,12 +563,16 @@ class Up_Slow:
 class Up_Event:
     kind: Literal['Event']
     sequence: int
+    time_s: float
+    host_s: Optional[float]
     frame: int
     kind_: EventKind
 
 class Up_Counters:
     kind: Literal['Counters']
     sequence: int
+    time_s: float
+    host_s: Optional[float]
     frames: int
     frames_lost: int
     overruns: int
@@ -579,6 +587,8 @@ class Up_Counters:
 class Up_Answer:
     kind: Literal['Answer']
     sequence: int
+    time_s: float
+    host_s: Optional[float]
     of: int
     frame: int
     answer: Answer
@@ -586,12 +596,16 @@ class Up_Answer:
 class Up_Saved:
     kind: Literal['Saved']
     sequence: int
+    time_s: float
+    host_s: Optional[float]
     frame: int
     kept: Kept
 
 class Up_About:
     kind: Literal['About']
     sequence: int
+    time_s: float
+    host_s: Optional[float]
     identity: Identity
     schema: int
     frames: int
@@ -600,18 +614,24 @@ class Up_About:
 class Up_Restored:
     kind: Literal['Restored']
     sequence: int
+    time_s: float
+    host_s: Optional[float]
     kept: Kept
     payload: List[int]
 
 class Up_Raw:
     kind: Literal['Raw']
     sequence: int
+    time_s: float
+    host_s: Optional[float]
     first: int
     frames: List[Frame]
 
 class Up_Senses:
     kind: Literal['Senses']
     sequence: int
+    time_s: float
+    host_s: Optional[float]
     frame: int
     samples: List[int]
     films: List[int]
@@ -619,6 +639,8 @@ class Up_Senses:
 class Up_Taken:
     kind: Literal['Taken']
     sequence: int
+    time_s: float
+    host_s: Optional[float]
     before: int
     of: int
     command: Down

@@ -54,6 +54,7 @@ def stubs() -> str:
             text += f"\n{name} = Literal[{', '.join(repr(variant) for variant, _ in of['enum'])}]\n"
         else:
             number = "    sequence: int\n" if name in ("Up", "Down") else ""
+            number += "    time_s: float\n    host_s: Optional[float]\n" if name == "Up" else ""
             for variant, fields in of["enum"]:
                 text += f"\nclass {name}_{variant}:\n    kind: Literal[{variant!r}]\n{number}{_fields(fields)}"
             text += f"\n{name} = Union[{', '.join(f'{name}_{variant}' for variant, _ in of['enum'])}]\n"

@@ -26,6 +26,9 @@ const NOTHING_MN: i32 = 300;
 const OPEN_PERMILLE: u16 = 400;
 const CLOSE_PERMILLE_MIN: u16 = 150;
 
+/// How long a loss is warned of, ns: its count stays.
+const LOSSY_NS: u64 = 10_000_000_000;
+
 pub fn header(hand: &str, at_ns: u64) -> Header {
     Header { stamp: Time::of_ns(at_ns), frame_id: hand.to_owned() }
 }
@@ -95,16 +98,30 @@ pub struct Health {
     pub counters: Option<Counters>,
     pub missed: u64,
     pub bad_frames: u64,
+    /// All that was lost, and when that last grew.
+    pub lost: u64,
+    pub lost_ns: Option<u64>,
 }
 
 impl Health {
+    /// Takes the counts of a line.
+    pub fn count(&mut self, missed: u64, bad_frames: u64, at_ns: u64) {
+        (self.missed, self.bad_frames) = (missed, bad_frames);
+        let counters = self.counters.unwrap_or_default();
+        let lost = u64::from(counters.frames_lost) + u64::from(counters.ticks_late) + missed + bad_frames;
+        if lost > self.lost {
+            self.lost_ns = Some(at_ns);
+        }
+        self.lost = lost;
+    }
+
     pub fn diagnostics(&self, hand: &str, at_ns: u64) -> DiagnosticArray {
         let counters = self.counters.unwrap_or_default();
-        let lossy = counters.frames_lost > 0 || counters.ticks_late > 0 || self.missed > 0;
+        let lossy = self.lost_ns.is_some_and(|lost_ns| at_ns.saturating_sub(lost_ns) < LOSSY_NS);
         let (level, message) = match &self.gone {
             Some(why) => (2, why.clone()),
             None if self.counters.is_none() => (3, "nothing heard yet".to_owned()),
-            None if lossy => (1, "frames were lost, late or missed".to_owned()),
+            None if lossy => (1, "frames were lost, late or missed within 10 s".to_owned()),
             None => (0, "running".to_owned()),
         };
         let values = [

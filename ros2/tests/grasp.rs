@@ -2,8 +2,8 @@
 
 use tenax_hal_shim::behaviour::Behaviour;
 use tenax_hal_shim::motor::MotorDrive;
-use tenax_hal_shim::wire::Down;
-use tenax_ros2::hand::{Grasp, Step};
+use tenax_hal_shim::wire::{Counters, Down};
+use tenax_ros2::hand::{Grasp, Health, Step};
 use tenax_ros2::message::GripperCommand;
 
 const CEILING_MN: Option<i32> = Some(20_000);
@@ -67,4 +67,16 @@ fn no_effort_is_the_boards_gentle_grasp_once_and_what_is_no_command_is_refused()
         let command = GripperCommand { position, max_effort };
         assert!(Grasp::of(&command, ceiling).is_err(), "{command:?} {ceiling:?}");
     }
+}
+
+#[test]
+fn a_loss_is_warned_of_for_ten_seconds_and_counted_for_ever() {
+    let mut health = Health { counters: Some(Counters::default()), ..Health::default() };
+    let mut level = |missed, at_s: u64| {
+        health.count(missed, 0, at_s * 1_000_000_000);
+        let status = health.diagnostics("left", at_s * 1_000_000_000).status.remove(0);
+        (status.level, status.values[3].value.clone())
+    };
+    let told = [level(0, 1), level(1, 2), level(1, 11), level(1, 13), level(2, 14)];
+    assert_eq!(told.map(|(level, missed)| format!("{level} {missed}")), ["0 0", "1 1", "1 1", "0 1", "1 2"]);
 }

@@ -106,7 +106,7 @@ impl Summary {
         self.messages_missed = inbox.counts().missed;
     }
 
-    fn take(&mut self, message: Up, recorder: &mut dyn Recorder) {
+    pub(crate) fn take(&mut self, message: Up, recorder: &mut dyn Recorder) {
         match message {
             Up::Hello { after, .. } => self.starts.push(after),
             Up::Slow(slow) => recorder.slow(&slow),

@@ -1,8 +1,10 @@
 //! Files that somebody gives, read within bounds: neither a device nor the wrong file fills the memory.
 
 use std::fs::File;
-use std::io::{self, Read};
+use std::io::{self, BufRead, BufReader, Read};
 use std::path::Path;
+
+use serde::Deserialize;
 
 const TEXT_MAX_BYTES: u64 = 1_000_000;
 const CSV_MAX_BYTES: u64 = 1_000_000_000;
@@ -40,12 +42,17 @@ impl CsvError {
         }
     }
 
-    pub fn no_column<'a>(file: &str, why: &str, columns: impl IntoIterator<Item = &'a str>) -> Self {
+    pub fn no_column<'a>(
+        file: &str,
+        why: &str,
+        columns: impl IntoIterator<Item = &'a str>,
+        hint: &str,
+    ) -> Self {
         let quoted: Vec<String> = columns.into_iter().map(|name| format!("`{name}`")).collect();
         Self::Row {
             file: file.to_owned(),
             line: 1,
-            what: format!("{why}; the columns are {}", quoted.join(", ")),
+            what: format!("{why}; the columns are {}{hint}", quoted.join(", ")),
         }
     }
 }
@@ -58,17 +65,92 @@ pub fn open(path: &Path) -> Result<(File, String), CsvError> {
     }
 }
 
-pub fn rows<R: Read>(source: R) -> csv::Reader<Limited<R>> {
-    let source = Limited::new(source, CSV_MAX_BYTES);
-    csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(source)
+/// How a table is written: a recipe's `[table]`.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[serde(deny_unknown_fields, default)]
+pub struct Table {
+    pub delimiter: char,
+    pub decimal: char,
+    /// Begins lines that are skipped. `%` lines above the header are skipped as well.
+    pub comment: char,
+    /// False: the columns are called `column_1`, `column_2`, and so on.
+    pub header: bool,
 }
 
-pub fn number(column: &str, cell: &str) -> Result<f64, String> {
-    match cell.parse::<f64>() {
-        Ok(value) if value.is_finite() => Ok(value),
-        Ok(_) => Err(format!("column `{column}` is `{cell}`; only finite numbers are allowed")),
-        Err(_) => Err(format!("column `{column}` is `{cell}`, which is not a number")),
+impl Default for Table {
+    fn default() -> Self {
+        Self { delimiter: ',', decimal: '.', comment: '#', header: true }
     }
+}
+
+impl Table {
+    /// Fails if a sign is given two meanings, or is not one byte.
+    pub fn check(&self) -> Result<(), String> {
+        let signs = [self.delimiter, self.decimal, self.comment];
+        match signs.iter().all(char::is_ascii) && (1..3).all(|n| !signs[..n].contains(&signs[n])) {
+            true if ['.', ','].contains(&self.decimal) => Ok(()),
+            true => Err("decimal is \".\" or \",\"".into()),
+            false => Err("delimiter, decimal and comment are three different signs of ASCII".into()),
+        }
+    }
+
+    pub fn number(&self, column: &str, cell: &str) -> Result<f64, String> {
+        let value = if self.decimal == ',' { cell.replace(',', ".").parse() } else { cell.parse::<f64>() };
+        match value {
+            Ok(value) if value.is_finite() => Ok(value),
+            Ok(_) => Err(format!("column `{column}` is `{cell}`; only finite numbers are allowed")),
+            Err(_) if self.decimal == '.' && cell.replacen(',', ".", 1).parse::<f64>().is_ok() => {
+                Err(format!(
+                    "column `{column}` is `{cell}`, which is not a number; with a decimal comma a recipe says: [table] \
+                 decimal = \",\""
+                ))
+            }
+            Err(_) => Err(format!("column `{column}` is `{cell}`, which is not a number")),
+        }
+    }
+
+    /// Why columns may not be found: what a recipe can say instead.
+    pub fn hint(&self, columns: &[String]) -> String {
+        let all = columns.join(&self.delimiter.to_string());
+        let other = [';', '\t', ','].into_iter().find(|sign| *sign != self.delimiter && all.contains(*sign));
+        let is_number = |cell: &String| cell.replace(',', ".").parse::<f64>().is_ok();
+        match other {
+            Some(sign) => format!(
+                ". If {sign:?} stands between cells, a recipe says: [table] delimiter = {:?}",
+                sign.to_string()
+            ),
+            None if self.header && columns.iter().all(is_number) => {
+                ". If there is no header, a recipe says: [table] header = false".to_owned()
+            }
+            None => String::new(),
+        }
+    }
+}
+
+pub fn rows<R: Read>(source: R, table: &Table) -> io::Result<csv::Reader<impl Read + use<R>>> {
+    let source = past_head(BufReader::new(Limited::new(source, CSV_MAX_BYTES)), table)?;
+    let mut builder = csv::ReaderBuilder::new();
+    builder.trim(csv::Trim::All).comment(Some(table.comment as u8)).delimiter(table.delimiter as u8);
+    Ok(builder.has_headers(table.header).from_reader(source))
+}
+
+/// Makes comments of the `%` lines above the header. ROS begins the header itself so: it has as many cells as the line below.
+fn past_head<R: BufRead>(mut source: R, table: &Table) -> io::Result<impl Read + use<R>> {
+    let mut head: Vec<Vec<u8>> = Vec::new();
+    while head.last().is_none_or(|line| line.starts_with(b"%")) {
+        let mut line = Vec::new();
+        source.read_until(b'\n', &mut line)?;
+        // A byte order mark hides what a line begins with.
+        head.push(line.strip_prefix(b"\xef\xbb\xbf").map_or_else(|| line.clone(), <[u8]>::to_vec));
+    }
+    let cells = |line: &[u8]| line.iter().filter(|&&byte| byte == table.delimiter as u8).count();
+    for n in 0..head.len() - 1 {
+        let is_header = n + 2 == head.len() && cells(&head[n]) > 0 && cells(&head[n]) == cells(&head[n + 1]);
+        if !is_header {
+            head[n][0] = table.comment as u8;
+        }
+    }
+    Ok(io::Cursor::new(head.concat()).chain(source))
 }
 
 /// A source that fails where it is longer than allowed.

@@ -10,6 +10,7 @@ pub mod plant;
 pub mod recipe;
 pub mod recording;
 pub mod resample;
+pub mod suggest;
 
 pub use plant::ReplayPlant;
 pub use recipe::Recipe;

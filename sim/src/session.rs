@@ -7,9 +7,11 @@ use std::borrow::Cow;
 use std::path::Path;
 #[cfg(feature = "emulator")]
 use std::path::PathBuf;
+use std::sync::atomic::Ordering::Relaxed;
 
-use anyhow::{Context, bail};
-use tenax_frames::link::Inbox;
+use anyhow::{Context, bail, ensure};
+use tenax_frames::link::{Captured, Clock};
+use tenax_hal_shim::wire::Up;
 use tenax_logic::emg::model::EmgModel;
 use tenax_scene::plant::Plant;
 use tenax_scene::{SceneFile, World, builtin};
@@ -33,6 +35,7 @@ use crate::report::{Report, Subject};
 use crate::timeline::Timeline;
 
 pub const DEFAULT_SCENE: &str = "glass";
+const STOPPED: &str = "stopped before its end: there is no report";
 
 #[derive(Clone, Debug)]
 pub enum Board {
@@ -171,7 +174,9 @@ fn judged(
     let plant = line.of(Drawn::new(world, span_s, teller));
     let mut witness = Witness::new(0.0, span_s, calibrated.as_ref());
     witness.judge.deaf = file.lifts().collect();
-    let (run, Served { mut plant, .. }) = board.record(plant, &mut (&mut witness, recorder), progress)?;
+    let (run, Served { mut plant, stop, .. }) =
+        board.record(plant, &mut (&mut witness, recorder), progress)?;
+    ensure!(!stop.load(Relaxed), STOPPED);
     plant.draw();
     let truth = Fate { grips: std::mem::take(&mut plant.grips), ..Fate::of(plant.world.truth(), file) };
     progress(f64::INFINITY);
@@ -213,7 +218,8 @@ pub fn replay_served(
     let last_s = recording.first_s() + recording.duration_s();
     let span_s = (zero_s.max(recording.first_s() - margin_s), end_s.min(last_s + margin_s));
     let mut witness = Witness::new(zero_s, span_s, calibrated.as_ref());
-    let (run, _) = board.record(line.of(plant), &mut (&mut witness, recorder), progress)?;
+    let (run, served) = board.record(line.of(plant), &mut (&mut witness, recorder), progress)?;
+    ensure!(!served.stop.load(Relaxed), STOPPED);
     let scene = name_of(path);
     let (mut report, mut figure, timeline) = told(&scene, board.name(), seed, &run, witness, [None; 2]);
     let lead_in_s = recording.first_s() - zero_s;
@@ -224,17 +230,38 @@ pub fn replay_served(
     Ok(Outcome { run, report, figure, truth: Fate::default() })
 }
 
-pub fn recorded(name: &str, line: &[u8]) -> anyhow::Result<Outcome> {
-    let mut run = Summary::default();
-    let mut slows = Run::default();
-    run.hear(&mut Inbox::default(), line, u32::MAX, &mut slows);
-    let (Some(first), Some(last)) = (slows.slows.first(), slows.slows.last()) else {
-        bail!("{name} has no slow frame: it is no board's line");
-    };
-    let span_s = (seconds_of(first.frame), seconds_of(last.frame + 1));
-    run.virtual_s = span_s.1 - span_s.0;
+/// The report of a recording, in the file's time.
+pub fn recorded(name: &str, captured: &Captured) -> anyhow::Result<Outcome> {
+    let mut clock = Clock::default();
+    let mut messages = Vec::new();
+    for (_, came_ns, frame) in captured.frames() {
+        let Ok(heard) = frame else { continue };
+        let message = heard.received.message;
+        clock.hear(&message, came_ns);
+        let at = match &message {
+            Up::Slow(slow) => clock.at(slow.frame),
+            Up::Event(event) => clock.at(event.frame),
+            _ => continue,
+        };
+        messages.push((at, message));
+    }
+    let mut slows = messages.iter().filter(|(_, message)| matches!(message, Up::Slow(_))).map(|(at, _)| *at);
+    let Some(first) = slows.next() else { bail!("{name} has no slow frame: it is no board's line") };
+    let last = slows.next_back().unwrap_or(first);
+    // A figure's frames have 32 bits.
+    let zero = if last >= i64::from(u32::MAX) { first } else { 0 };
+    let in_figure = |at: i64| (at - zero).max(0) as u32;
+    let span_s = (seconds_of(in_figure(first)), seconds_of(in_figure(last) + 1));
+    let mut run = Summary { virtual_s: span_s.1 - span_s.0, ..Summary::default() };
     let mut witness = Witness::new(0.0, span_s, None);
-    slows.slows.iter().for_each(|slow| witness.slow(slow));
+    for (at, mut message) in messages {
+        match &mut message {
+            Up::Slow(slow) => slow.frame = in_figure(at),
+            Up::Event(event) => event.frame = in_figure(at),
+            _ => {}
+        }
+        run.take(message, &mut witness);
+    }
     let (report, figure, _) = told(name, "recorded", 0, &run, witness, [None; 2]);
     Ok(Outcome { run, report, figure, truth: Fate::default() })
 }

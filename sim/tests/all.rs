@@ -9,6 +9,7 @@ mod failures;
 mod feedback;
 mod golden;
 mod gripper;
+mod kept;
 mod lines;
 mod onsets;
 mod recipes;

@@ -1,6 +1,7 @@
 //! A recording with a mistake gets one message that names the file, the row and what is allowed.
 
 use crate::common::with_head;
+use tenax_sim::input::Table;
 use tenax_sim::recipe::Kind;
 use tenax_sim::replay::recipe::Time;
 use tenax_sim::replay::{Recipe, Recording};
@@ -44,7 +45,9 @@ fn mistakes_are_named_by_file_and_row() {
 fn a_recipe_names_the_clock_and_its_unit() {
     let map = "[[map]]\ncolumn = 'a'\nchannels = ['pvdf_1']\ngain = 1.0\n";
     let recipe = |time: &str| Recipe::parse(&with_head(&format!("[time]\n{time}\n{map}")), "r.toml");
-    let read = |csv: &str, time: &str| Recording::timed(csv.as_bytes(), "r.csv", &recipe(time).unwrap().time);
+    let read = |csv: &str, time: &str| {
+        Recording::timed(csv.as_bytes(), "r.csv", &Table::default(), &recipe(time).unwrap().time)
+    };
     let csv = "stamp,a,t\n1500,1,7\n1600,2,7\n";
     for (unit, first_s) in [("s", 1_500.0), ("ms", 1.5), ("us", 0.001_5)] {
         let recording = read(csv, &format!("column = 'stamp'\nunit = '{unit}'")).unwrap();
@@ -56,14 +59,19 @@ fn a_recipe_names_the_clock_and_its_unit() {
     let error = read("t,a\n0,1\n5500,1\n", "unit = 's'").unwrap_err().to_string();
     assert!(error.contains("[time] unit = \"ms\""), "{error}");
     let error = recipe("unit = 'h'").unwrap_err().to_string();
-    assert!(error.starts_with("r.toml:4: unknown variant `h`, expected one of `s`, `ms`, `us`"), "{error}");
+    assert!(
+        error.starts_with("r.toml:4: unknown variant `h`, expected one of `s`, `ms`, `us`, `ns`"),
+        "{error}"
+    );
 }
 
 #[test]
 fn what_is_not_text_is_refused_by_row_and_a_missing_file_is_named() {
     let error = Recording::parse(&b"t,a\n0,1\n1,\xff\xfe\n"[..], "r.csv").unwrap_err().to_string();
     assert!(error.starts_with("r.csv:3: not text"), "{error}");
-    let error = Recording::read("no/such/file.csv".as_ref(), &Time::default()).unwrap_err().to_string();
+    let error = Recording::read("no/such/file.csv".as_ref(), &Table::default(), &Time::default())
+        .unwrap_err()
+        .to_string();
     assert!(error.starts_with("no/such/file.csv: cannot be read"), "{error}");
 }
 
@@ -75,4 +83,102 @@ fn uneven_rows_columns_of_words_and_a_byte_order_mark_are_fine() {
     assert_eq!(recording.signals().collect::<Vec<_>>(), ["a", "label"]);
     assert!((recording.longest_gap_s() - 0.099).abs() < 1e-12);
     assert!((recording.rate_hz() - 30.0).abs() < 1e-9);
+}
+
+/// What a public recorder's file looked like: the recipe's layout, its text, and times and values of column `a`.
+#[test]
+fn anybodys_table_is_read_as_its_recipe_says() {
+    let map = "[[map]]\ncolumn = 'a'\nchannels = ['pvdf_1']\ngain = 1.0\n";
+    for (layout, csv, name, times, values) in [
+        (
+            "[table]\ndelimiter = ';'\ndecimal = ','\n",
+            "t;a\n0,0000;1,6500\n0,0010;-1,5\n",
+            "a",
+            [0.0, 0.001],
+            [1.65, -1.5],
+        ),
+        (
+            "[table]\ndelimiter = ';'\ndecimal = ','\nheader = false\n[time]\nrate_hz = 500\n",
+            "-0,0387;1,65\n-0,5;1,653\n",
+            "column_2",
+            [0.0, 0.002],
+            [1.65, 1.653],
+        ),
+        // OpenBCI's: comments, and a name twice that nobody maps.
+        (
+            "[time]\ncolumn = 'Timestamp'\n",
+            "\u{feff}%OpenBCI Raw EXG Data\n%Sample Rate = 200 Hz\nIndex, a, Other, Other, Timestamp\n0, 7, 0, 0, 100.5\n1, 8, 0, 0, 101\n",
+            "a",
+            [100.5, 101.0],
+            [7.0, 8.0],
+        ),
+        // A ROS bag's.
+        (
+            "[time]\ncolumn = '%time'\nunit = 'ns'\n",
+            "%time,a\n1400000000000000000,0.3\n1400000000500000000,0.4\n",
+            "a",
+            [1.4e9, 1.4e9 + 0.5],
+            [0.3, 0.4],
+        ),
+        ("[table]\ncomment = '%'\n", "t,a\n0,1\n% paused\n2,3\n", "a", [0.0, 2.0], [1.0, 3.0]),
+        ("[table]\ndelimiter = \"\\t\"\n", "t\ta\n0\t1\n2\t3\n", "a", [0.0, 2.0], [1.0, 3.0]),
+    ] {
+        let recipe = Recipe::parse(&with_head(&format!("{layout}{map}")), "r.toml").unwrap();
+        let read = Recording::timed(csv.as_bytes(), "r.csv", &recipe.table(), &recipe.time).unwrap();
+        assert_eq!((read.t_s(), read.series(name).unwrap()), (&times[..], values.to_vec()), "{layout}");
+    }
+    let wrong = |layout: &str| {
+        Recipe::parse(&with_head(&format!("{layout}\n{map}")), "r.toml").unwrap_err().to_string()
+    };
+    assert!(
+        wrong("[table]\ndelimiter = ','\ndecimal = ','").starts_with("r.toml:3: delimiter, decimal"),
+        "{}",
+        wrong("[table]\ndelimiter = ','\ndecimal = ','")
+    );
+    assert!(
+        wrong("[time]\ncolumn = 't'\nrate_hz = 5").starts_with("r.toml:5: give either rate_hz or column")
+    );
+    assert!(wrong("[table]\nseparator = ','").contains("unknown field `separator`"));
+}
+
+#[test]
+fn a_table_that_is_written_otherwise_is_told_so() {
+    for (csv, expected) in [
+        ("t;a\n0,0;1,5\n0,1;1,6\n", "a recipe says: [table] delimiter = \";\""),
+        ("t\ta\n0\t1\n1\t2\n", "a recipe says: [table] delimiter = \"\\t\""),
+        ("0,1.5\n0.1,1.6\n", "a recipe says: [table] header = false"),
+        ("t,a\n0,\"1,5\"\n1,\"1,6\"\n", "a recipe says: [table] decimal = \",\""),
+        (
+            "t,a\n1,5\n1,6\n1,7\n",
+            "every row has the time 1 s; a recipe can say the rows a second: [time] rate_hz",
+        ),
+    ] {
+        assert!(message(csv).contains(expected), "{csv:?} says {}", message(csv));
+    }
+}
+
+/// Sixteen samples that arrive together, as over Bluetooth, are those that were taken 1 ms apart.
+#[test]
+fn bursts_with_one_stamp_are_spread_evenly_and_told() {
+    let rows = |stamp: &dyn Fn(u32) -> u32| -> String {
+        (0..160).map(|n| format!("{},{n}\n", f64::from(stamp(n)) / 1e3)).collect()
+    };
+    let read = |rows: String| Recording::parse(format!("t,a\n{rows}").as_bytes(), "r.csv").unwrap();
+    let (even, bursts) = (read(rows(&|n| n)), read(rows(&|n| n / 16 * 16 + 15)));
+    assert!(even.t_s().iter().zip(bursts.t_s()).all(|(a, b)| (a - b).abs() < 1e-9), "{:?}", bursts.t_s());
+    assert_eq!((even.doubts(), bursts.doubts().len()), (Vec::new(), 1));
+    assert!(
+        bursts.doubts()[0].starts_with("150 rows have the time of the row before"),
+        "{:?}",
+        bursts.doubts()
+    );
+    // After a pause, a burst is no longer than others.
+    let paused = read(rows(&|n| n / 16 * 16 + 15 + if n < 80 { 0 } else { 1_000 }));
+    assert!((paused.t_s()[80] - 1.080).abs() < 1e-9 && (paused.longest_gap_s() - 1.001).abs() < 1e-9);
+    let explained = bursts.explained(&|column| if column == "a" { "pvdf_1".into() } else { String::new() });
+    for part in
+        ["160 rows of 2 columns", "spread evenly", "pvdf_1", "0, 1, 2; 0 to 159", "1000.0 rows a second"]
+    {
+        assert!(explained.contains(part), "{part}: {explained}");
+    }
 }

@@ -7,9 +7,7 @@ use std::time::{Duration, Instant};
 use serde::Serialize;
 use tenax_hal_shim::wire::Up;
 
-use crate::link::captured::line_of;
-use crate::link::{Heard, Inbox};
-use crate::words::seconds;
+use crate::link::{Captured, Clock, Heard, Inbox};
 
 /// Interval of [`Told::At`], s of the recording.
 const TOLD_EACH_S: f64 = 0.1;
@@ -25,22 +23,18 @@ pub struct Reel {
 
 impl Reel {
     pub fn open(path: &Path) -> anyhow::Result<Self> {
-        let line = line_of(path)?;
-        let (mut inbox, mut frames) = (Inbox::default(), Vec::new());
-        // A board that starts anew counts from 0 again: its time goes on.
-        let (mut at_s, mut zero_s) = (0.0, None);
-        for (n, &byte) in line.iter().enumerate() {
-            let Some(frame) = inbox.push(byte) else { continue };
-            match frame.map(|heard| heard.received.message) {
-                Ok(Up::Hello { .. }) => zero_s = Some(at_s),
-                Ok(Up::Slow(slow)) => {
-                    let board_s = seconds(slow.frame);
-                    at_s = board_s + *zero_s.get_or_insert(-board_s);
+        let captured = Captured::open(path)?;
+        let (mut clock, mut frames, mut first_s, mut at_s) = (Clock::default(), Vec::new(), None, 0.0);
+        for (end, came_ns, frame) in captured.frames() {
+            if let Ok(heard) = frame {
+                clock.hear(&heard.received.message, came_ns);
+                if let Some(now_s) = clock.last().map(|last| clock.seconds(last)) {
+                    at_s = now_s - *first_s.get_or_insert(now_s);
                 }
-                _ => {}
             }
-            frames.push((at_s, n + 1));
+            frames.push((at_s, end));
         }
+        let line = captured.line;
         Ok(Self { line, frames })
     }
 

@@ -1,6 +1,7 @@
 //! Recordings of a board's line: MCAP for Foxglove, PlotJuggler and Python, and CSV with the same values. The topic `/line` holds the bytes
 //! as they came; all other topics are made from them. A message's log time is the board's, counted from this computer's clock at the
-//! beginning; its publish time is this computer's. The metadata `tenax` names tool, chip, build, schema and settings.
+//! beginning and at each start of the board; its publish time is this computer's. The file is whole at every moment but for the last
+//! half second. The metadata `tenax` names tool, chip, build, schema and settings.
 
 pub mod csv;
 pub mod topics;
@@ -10,7 +11,7 @@ use std::fs::File;
 use std::io::{BufWriter, ErrorKind, Write};
 use std::iter;
 use std::path::{Path, PathBuf};
-use std::time::{Duration, SystemTime, UNIX_EPOCH};
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use anyhow::{Context, bail};
 use mcap::records::{MessageHeader, Metadata};
@@ -18,12 +19,11 @@ use mcap::write::NoSeek;
 use mcap::{McapResult, WriteOptions, Writer};
 use tenax_hal_shim::wire::{About, Answer, FRAME_MAX, Received, Up, encode};
 
-use self::topics::{Row, rows};
-use crate::link::Inbox;
+use self::topics::{Row, timed};
 use crate::link::captured::{TOPIC, is_recording};
+use crate::link::{Clock, Inbox};
 use crate::protobuf::{self, PACKAGE, Value};
 use crate::settings;
-use crate::words::seconds;
 
 /// The name of a recording that begins now: `tenax-20261123T081500Z.mcap`.
 pub fn name_now() -> PathBuf {
@@ -31,16 +31,22 @@ pub fn name_now() -> PathBuf {
     PathBuf::from(format!("tenax-{}.mcap", now.replace(['-', ':'], "")))
 }
 
+/// Messages reach the file after so much of the recording computer's time, or of the board's.
+const WHOLE_EVERY: Duration = Duration::from_millis(500);
+
 pub struct Recording {
+    path: PathBuf,
     file: Writer<NoSeek<BufWriter<File>>>,
     /// Number of each topic's channel, and of its next message.
     channels: BTreeMap<String, (u16, u32)>,
-    /// When the file was begun, and the board's time 0 by this computer's clock, if that is known.
+    /// When the file was begun, ns since 1970, and by a clock that nobody sets.
     began_ns: u64,
-    zero_ns: Option<u64>,
-    last: u32,
-    about: Option<About>,
-    error: Option<anyhow::Error>,
+    began: Instant,
+    clock: Clock,
+    /// Whether the metadata are written: as soon as the board has said who it is.
+    is_named: bool,
+    /// When the oldest message that is not in the file came, and its log time, ns.
+    oldest: Option<(Instant, u64)>,
     inbox: Inbox,
 }
 
@@ -66,49 +72,64 @@ impl Recording {
             // A chunk is written when it is whole: a file that is cut short is read up to there.
             .disable_seeking(true);
         Ok(Self {
+            path: path.to_owned(),
             file: options.create(NoSeek::new(BufWriter::new(file)))?,
             channels: BTreeMap::new(),
-            began_ns: now_ns(),
-            zero_ns: None,
-            last: 0,
-            about: None,
-            error: None,
+            began_ns: SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_nanos() as u64),
+            began: Instant::now(),
+            clock: Clock::default(),
+            is_named: false,
+            oldest: None,
             inbox: Inbox::default(),
         })
     }
 
-    /// Records a message. An error is kept for [`finish`](Self::finish).
-    pub fn take(&mut self, received: &Received<Up>) {
-        if let Up::About(about) | Up::Answer { answer: Answer::About(about), .. } = &received.message {
-            self.about = Some(about.clone());
+    /// Records a message. Fails if the file cannot be written: it is whole up to there.
+    pub fn take(&mut self, received: &Received<Up>) -> anyhow::Result<()> {
+        self.try_take(received).with_context(|| self.cannot())
+    }
+
+    fn try_take(&mut self, received: &Received<Up>) -> McapResult<()> {
+        let message = &received.message;
+        if let Up::About(about) | Up::Answer { answer: Answer::About(about), .. } = message
+            && !self.is_named
+        {
+            self.name(Some(about))?;
         }
-        let came_ns = now_ns();
-        if matches!(received.message, Up::Hello { .. }) {
-            // A board that starts anew counts from 0 again: in the file, its time goes on.
-            (self.zero_ns, self.last) = (Some(came_ns.max(self.at_ns(self.last) + 1)), 0);
-        }
-        let rows = rows(&received.message, self.last);
-        self.last = rows.iter().map(|row| row.frame).fold(self.last, u32::max);
-        if self.zero_ns.is_none() {
-            // Before the first frame there is no time.
-            if self.last == 0 {
-                return;
-            }
-            self.zero_ns = Some(came_ns.saturating_sub(in_ns(self.last)));
-        }
+        let came_ns = self.began_ns + self.began.elapsed().as_nanos() as u64;
+        let rows = timed(&mut self.clock, message, Some(came_ns));
+        let Some(last) = self.clock.last() else { return Ok(()) };
         let mut buffer = [0; FRAME_MAX];
-        let bytes = encode(received.sequence, &received.message, &mut buffer);
+        let bytes = encode(received.sequence, message, &mut buffer);
         let fields = vec![("data".into(), Value::Bytes(bytes.unwrap_or_default().to_vec()))];
-        let line = Row { topic: TOPIC.into(), message: "Line", frame: self.last, fields };
-        for row in iter::once(line).chain(rows) {
-            if let Err(error) = self.write(&row, came_ns) {
-                self.error.get_or_insert(error.into());
-            }
+        let line = Row { topic: TOPIC.into(), message: "Line", frame: last, fields };
+        iter::once(line).chain(rows).try_for_each(|row| self.write(&row, came_ns))?;
+        let (_, from_ns) = *self.oldest.get_or_insert((Instant::now(), self.clock.ns(last)));
+        if self.clock.ns(last).saturating_sub(from_ns) >= WHOLE_EVERY.as_nanos() as u64 {
+            self.flush()?;
+        }
+        Ok(())
+    }
+
+    /// Writes what has waited for long enough; to be called all the time. Fails as [`take`](Self::take) does.
+    pub fn keep(&mut self) -> anyhow::Result<()> {
+        match self.oldest {
+            Some((came, _)) if came.elapsed() >= WHOLE_EVERY => self.flush().with_context(|| self.cannot()),
+            _ => Ok(()),
         }
     }
 
+    fn flush(&mut self) -> McapResult<()> {
+        self.oldest = None;
+        self.file.flush()
+    }
+
+    fn cannot(&self) -> String {
+        format!("cannot write {}, which is whole up to there", self.path.display())
+    }
+
     fn write(&mut self, row: &Row, came_ns: u64) -> McapResult<()> {
-        let log_time = self.at_ns(row.frame);
+        let log_time = self.clock.ns(row.frame);
         if !self.channels.contains_key(&*row.topic) {
             let descriptor = protobuf::descriptor(row.message, &row.fields);
             let schema =
@@ -123,29 +144,38 @@ impl Recording {
         self.file.write_to_known_channel(&header, &protobuf::message(&row.fields))
     }
 
-    fn at_ns(&self, frame: u32) -> u64 {
-        self.zero_ns.unwrap_or(0) + in_ns(frame)
-    }
-
-    pub fn line(&mut self, bytes: &[u8]) {
+    /// Records the messages in a line's bytes. Fails as [`take`](Self::take) does.
+    pub fn line(&mut self, bytes: &[u8]) -> anyhow::Result<()> {
         for &byte in bytes {
             if let Some(Ok(heard)) = self.inbox.push(byte) {
-                self.take(&heard.received);
+                self.take(&heard.received)?;
             }
         }
+        self.keep()
     }
 
     /// Ends the file. Fails if it could not be written whole.
-    pub fn finish(mut self) -> anyhow::Result<()> {
-        if let Some(error) = self.error {
-            return Err(error);
+    pub fn finish(self) -> anyhow::Result<()> {
+        let cannot = self.cannot();
+        self.try_finish().context(cannot)
+    }
+
+    fn try_finish(mut self) -> McapResult<()> {
+        if !self.is_named {
+            self.name(None)?;
         }
+        self.file.finish()?;
+        Ok(self.file.into_inner().flush()?)
+    }
+
+    fn name(&mut self, about: Option<&About>) -> McapResult<()> {
+        self.is_named = true;
         let began = UNIX_EPOCH + Duration::from_nanos(self.began_ns);
         let mut all = vec![
             ("tool", concat!("tenax ", env!("CARGO_PKG_VERSION")).to_owned()),
             ("began", humantime::format_rfc3339_millis(began).to_string()),
         ];
-        if let Some(About { identity, schema, settings, .. }) = &self.about {
+        if let Some(About { identity, schema, settings, .. }) = about {
             let [c0, c1, c2] = identity.chip;
             all.extend([
                 ("chip", format!("{c0:08x}-{c1:08x}-{c2:08x}")),
@@ -155,16 +185,6 @@ impl Recording {
             ]);
         }
         let metadata = all.into_iter().map(|(key, value)| (key.to_owned(), value)).collect();
-        self.file.write_metadata(&Metadata { name: "tenax".to_owned(), metadata })?;
-        self.file.finish()?;
-        Ok(self.file.into_inner().flush()?)
+        self.file.write_metadata(&Metadata { name: "tenax".to_owned(), metadata })
     }
-}
-
-fn in_ns(frame: u32) -> u64 {
-    (seconds(frame) * 1e9) as u64
-}
-
-fn now_ns() -> u64 {
-    SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_nanos() as u64)
 }

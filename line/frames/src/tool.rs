@@ -5,6 +5,7 @@ pub mod format;
 pub mod image;
 pub mod out;
 pub mod progress;
+pub mod stop;
 pub mod workspace;
 
 use std::process::ExitCode;

@@ -7,7 +7,7 @@ use tenax_hal_shim::wire::{
     About, Answer, BadFrame, Down, EventKind, NetworkState, Refusal, Restored, SCHEMA, Setting, Slow,
     TickRecord, Up, VERSION,
 };
-use tenax_hal_shim::words::{Calibration, Fault, Kept};
+use tenax_hal_shim::words::{Calibration, Fault, Kept, Line};
 use tenax_logic::setting::SettingId;
 
 /// End of a frame, s of the board's time.
@@ -71,6 +71,15 @@ const fn kept_in_words(kept: Kept) -> &'static str {
         Kept::Zero => "the force sensor's zeros",
         Kept::Settings => "the settings",
         Kept::Emg => "the wearer's calibration",
+    }
+}
+
+/// What the line may do.
+pub fn line_words(line: Line) -> String {
+    match line {
+        Line::Reading => "reads only".to_owned(),
+        Line::Armed { left_s } => format!("may command for {left_s} s"),
+        Line::Trusted => "trusted".to_owned(),
     }
 }
 
@@ -227,7 +236,7 @@ fn slow_words(slow: &Slow) -> String {
     }
     text += if slow.lesson.is_some() { " learning" } else { "" };
     text += if slow.wearer_active { " wearer" } else { "" };
-    text + &format!(" {:?}", slow.line)
+    text + " line " + &line_words(slow.line)
 }
 
 fn network_words(network: &NetworkState) -> String {

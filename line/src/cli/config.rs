@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use anyhow::{Context, bail};
+use anyhow::{Context, bail, ensure};
 use clap::Subcommand;
-use tenax_hal_shim::wire::{Answer, Down, SETTINGS_PER_ANSWER, Setting};
+use tenax_hal_shim::wire::{Answer, Down, Refusal, SETTINGS_PER_ANSWER, Setting};
 use tenax_logic::setting::SettingId;
 
 use super::port::Line;
@@ -42,7 +42,7 @@ enum Command {
         #[arg(value_name = "NAME", value_parser = settings::named)]
         id: SettingId,
     },
-    /// Change settings; each is read back
+    /// Change settings, all or none; each is read back
     Set {
         /// The settings and their values, such as s1-mv=120; the name's end is the unit
         #[arg(required = true, value_name = "NAME=VALUE", value_parser = settings::parse)]
@@ -53,7 +53,7 @@ enum Command {
         /// The file, such as hand.toml [default: standard output]
         file: Option<PathBuf>,
     },
-    /// Set all settings that a TOML file names
+    /// Set all settings that a TOML file names, or none
     Import {
         /// A file that `tenax config export` wrote
         file: PathBuf,
@@ -105,7 +105,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
             }
         }
         Command::Set { .. } | Command::Import { .. } | Command::Reset { .. } => {
-            wanted.into_iter().try_for_each(|setting| set(&mut client, setting))?;
+            set(&mut client, &wanted)?;
         }
     }
     Ok(ExitCode::SUCCESS)
@@ -125,16 +125,70 @@ fn all(client: &mut Client) -> anyhow::Result<Vec<Setting>> {
     }
 }
 
-/// Sets a setting and reads it back.
-pub fn set(client: &mut Client, setting: Setting) -> anyhow::Result<()> {
+/// Sets all, or none, and reads them back. Fails with what was refused, and why; what was set before is set back.
+pub fn set(client: &mut Client, wanted: &[Setting]) -> anyhow::Result<()> {
+    let before = all(client)?;
+    let (mut done, mut back) = (Vec::new(), Vec::new());
+    let changes = wanted.iter().filter(|own| !before.contains(own)).copied().collect();
+    let why = match set_each(client, changes, &mut done) {
+        Ok(refused) if refused.is_empty() => {
+            let told = || {
+                format!("set, and not read back: {}", wanted.iter().map(words).collect::<Vec<_>>().join(", "))
+            };
+            let now = all(client).with_context(told)?;
+            let other = wanted.iter().find(|own| !now.contains(own)).map(words);
+            ensure!(
+                other.is_none(),
+                "{} was set, and is not what the board now says",
+                other.unwrap_or_default()
+            );
+            return wanted.iter().try_for_each(|own| out::say!("{}", words(own)));
+        }
+        Ok(refused) => refused.join("; "),
+        Err(error) => format!("{error:#}"),
+    };
+    let old = before.into_iter().filter(|own| done.iter().any(|set| set.id == own.id)).collect();
+    let is_back = set_each(client, old, &mut back).is_ok();
+    let is_left = |set: &&Setting| !is_back || !back.iter().any(|own| own.id == set.id);
+    let left: Vec<String> = done.iter().filter(is_left).map(words).collect();
+    match left.is_empty() {
+        true => bail!("{why}. Nothing is changed"),
+        false => bail!("{why}. Set, and not set back: {}. All others are as they were", left.join(", ")),
+    }
+}
+
+/// Sets one after the other; what is out of its range once more after the others, which may move it. Returns what was refused.
+fn set_each(
+    client: &mut Client,
+    mut left: Vec<Setting>,
+    done: &mut Vec<Setting>,
+) -> anyhow::Result<Vec<String>> {
+    loop {
+        let (mut again, mut refused) = (Vec::new(), Vec::new());
+        for setting in &left {
+            // Of a line that ends before the answer nobody knows: it has to be set back, too.
+            done.push(*setting);
+            match client.ask(&Down::Set(*setting), ANSWER_WITHIN)? {
+                Answer::Setting(own) if own == *setting => {}
+                Answer::Refused(why) => {
+                    done.pop();
+                    refused.push(format!("{} is refused: {}", words(setting), refusal_words(&why)));
+                    again.push(*setting);
+                    if !matches!(why, Refusal::OutOfRange { .. } | Refusal::UnknownSetting) {
+                        return Ok(refused);
+                    }
+                }
+                other => bail!("the board answers {other:?}"),
+            }
+        }
+        if again.is_empty() || again.len() == left.len() {
+            return Ok(refused);
+        }
+        left = again;
+    }
+}
+
+fn words(setting: &Setting) -> String {
     let name = SettingId::from_number(setting.id).map_or("?", |id| id.row().name);
-    match client.ask(&Down::Set(setting), ANSWER_WITHIN)? {
-        Answer::Setting(own) if own == setting => {}
-        Answer::Refused(why) => bail!("{name} = {} is refused: {}", setting.value, refusal_words(&why)),
-        other => bail!("the board answers {other:?}"),
-    }
-    match client.ask(&Down::Get(setting.id), ANSWER_WITHIN)? {
-        Answer::Setting(own) if own == setting => out::say!("{name} = {}", own.value),
-        other => bail!("{name} was set to {}, and the board now answers {other:?}", setting.value),
-    }
+    format!("{name} = {}", setting.value)
 }

@@ -3,13 +3,15 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use tenax_frames::link::captured::line_of;
+use tenax_frames::link::Captured;
 use tenax_frames::record::csv;
 use tenax_frames::tool::out;
 
 const EXAMPLES: &str = "\
 Examples:
   tenax play hand.mcap --csv tables            CSV files in the folder tables
+Each begins with three times, in s: `time_s` goes on when the board starts again, `board_s` counts from its start, `host_s` is
+the recording computer's since 1970.
 `tenax monitor --file FILE` plays a recording on the page, which scrubs, loops and pauses it.";
 
 /// Write a recording as CSV.
@@ -24,7 +26,7 @@ pub struct Args {
 }
 
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
-    for path in csv::export(&line_of(&args.file)?, &args.csv)? {
+    for path in csv::export(&Captured::open(&args.file)?, &args.csv)? {
         out::note!("  {:<14}{}", "written", path.display());
     }
     Ok(ExitCode::SUCCESS)

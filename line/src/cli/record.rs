@@ -2,19 +2,18 @@
 
 use std::path::PathBuf;
 use std::process::ExitCode;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::sync::atomic::Ordering::Relaxed;
 use std::time::{Duration, Instant};
 
-use anyhow::Context;
+use anyhow::{Context, bail};
 use tenax_hal_shim::wire::{Answer, Down, Setting, Up};
 use tenax_logic::setting::SettingId;
 
 use super::port::Line;
 use tenax_frames::link::{ANSWER_WITHIN, Client};
 use tenax_frames::record::{self, Recording};
-use tenax_frames::tool::out;
 use tenax_frames::tool::progress::Progress;
+use tenax_frames::tool::{out, stop};
 use tenax_frames::words::seconds;
 
 /// Settings are saved every 3 s at most.
@@ -29,7 +28,7 @@ pub struct Args {
     /// The recording, a new file [default: tenax- and the time, in this folder]
     #[arg(long, value_name = "FILE.mcap")]
     out: Option<PathBuf>,
-    /// Length, s [default: until Ctrl-C or the end of the line]
+    /// Length, s [default: until Ctrl-C]
     #[arg(long, value_name = "S")]
     seconds: Option<f64>,
     /// Begin at the board's next start, so that `tenax run --replay` can replay the recording: sets stream-at-start-flag, then
@@ -44,7 +43,7 @@ Examples:
   tenax plot walk.mcap                         draws it
   tenax record --from-start --out whole.mcap   from the board's reset on, for `tenax run --replay`";
 
-/// Records until the time is over, the line ends or Ctrl-C.
+/// Records until the time is over or a signal comes. Fails if the line ends before: what came is recorded.
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     let mut client = args.line.open()?;
     let path = args.out.clone().unwrap_or_else(record::name_now);
@@ -54,13 +53,11 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     } else if client.can_send() {
         client.send(&Down::About)?;
     }
-    let stopped = Arc::new(AtomicBool::new(false));
-    signal_hook::flag::register(signal_hook::consts::SIGINT, Arc::clone(&stopped))
-        .context("cannot listen for Ctrl-C")?;
+    let stopped = stop::on_signals()?;
     let status = Progress::new("record", 1.0);
-    let (mut began, mut waits, mut is_joined) = (Instant::now(), args.from_start, false);
+    let (mut began, mut waits, mut is_joined, mut end) = (Instant::now(), args.from_start, false, None);
     let is_over = |began: Instant| args.seconds.is_some_and(|s| began.elapsed().as_secs_f64() >= s);
-    while !stopped.load(Relaxed) && (waits || !is_over(began)) {
+    while end.is_none() && !stopped.load(Relaxed) && (waits || !is_over(began)) {
         if !waits {
             client.keep_streaming(true)?;
         }
@@ -86,24 +83,29 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
                     );
                 }
                 is_joined |= first.is_some();
-                recording.take(&heard.received);
+                recording.take(&heard.received)?;
             }
             Ok(None) => {}
-            Err(_) => break,
+            Err(error) => end = Some(error),
         }
+        recording.keep()?;
         status.say(|_| client.counts().to_string());
     }
-    recording.finish().with_context(|| format!("cannot write {}", path.display()))?;
+    recording.finish()?;
     status.clear();
     out::note!("{}, written to {}", client.counts(), path.display());
-    Ok(ExitCode::SUCCESS)
+    // A captured line has an end.
+    match end.filter(|_| client.can_send()) {
+        None => Ok(ExitCode::SUCCESS),
+        Some(end) => bail!("the line ended after {:.1} s, unasked ({end})", began.elapsed().as_secs_f64()),
+    }
 }
 
 /// Has the board stream from its start on, and asks for that. Fails if it does not let itself be set.
 fn stream_at_start(client: &mut Client) -> anyhow::Result<()> {
     let setting = Setting { id: SettingId::StreamAtStart.number(), value: 1 };
     if client.ask(&Down::Get(setting.id), ANSWER_WITHIN)? != Answer::Setting(setting) {
-        super::config::set(client, setting)?;
+        super::config::set(client, &[setting])?;
         let began = Instant::now();
         while began.elapsed() < SAVED_WITHIN {
             client.next_message().context("the line ended")?;

@@ -9,7 +9,7 @@ use tenax_frames::link::{Counts, Heard};
 use tenax_frames::play;
 use tenax_frames::settings;
 use tenax_frames::truth;
-use tenax_frames::words::{answer_words, in_words, seconds, why, words};
+use tenax_frames::words::{answer_words, in_words, line_words, seconds, why, words};
 use tenax_hal_shim::channel::{CHANNELS, mv_from_sample};
 use tenax_hal_shim::detector::{DetectorId, DetectorSet};
 use tenax_hal_shim::wire::{About, Answer, BadFrame, EventKind, Setting, Slow, TickRecord, Up};
@@ -193,7 +193,7 @@ impl View {
             "t_s": seconds(slow.frame),
             "frame": slow.frame,
             "mode": format!("{:?}", slow.mode),
-            "line": format!("{:?}", slow.line),
+            "line": line_words(slow.line),
             "wearer_active": slow.wearer_active,
             "points": [point],
             "detectors": detectors.collect::<Vec<_>>(),

@@ -15,8 +15,6 @@ impl Injected {
 
 impl Detector for Injected {
     const ID: DetectorId = DetectorId::Injected;
-    // Injected reports are never implausible.
-    const IMPLAUSIBLE_AFTER: u16 = u16::MAX;
     type Config = ();
 
     fn step(&mut self, _config: &(), _sensed: &Sensed<'_>) -> Option<Said> {

@@ -5,6 +5,7 @@ use super::constants::Fitted;
 use super::fitted::FITTED;
 use super::level::{FLOOR_LEVEL, level_of, uv_of};
 use super::model::EmgModel;
+use super::trust::HUM_PART;
 
 /// Top of the sensor's range, uV: above, no motion starts, but one that has started goes on.
 pub const OVER_UV: i32 = 2_950_000;
@@ -125,6 +126,8 @@ struct Machine {
     trough: [i32; 2],
     /// Offset of rest, uV, Q8.
     drift: [i32; 2],
+    /// Envelope of the hum that is part of it, uV; 0 without hum.
+    hum_uv: [i32; 2],
 }
 
 impl Decide {
@@ -185,6 +188,7 @@ impl Machine {
             crest: 0,
             trough: [0; 2],
             drift: [0; 2],
+            hum_uv: [0; 2],
         }
     }
 
@@ -304,15 +308,19 @@ impl Machine {
             && self.mean[1] < 16 * f.ends[1];
         self.calm = if calm { self.calm.saturating_add(1) } else { 0 };
         for (n, Electrode { uv, hums, .. }) in electrodes.into_iter().enumerate() {
-            let Some(uv) = uv.filter(|_| self.calm >= CALM_FRAMES || hums) else { continue };
-            let added = (uv - sites.rest_uv[n]).min(MOST_DRIFT_UV) * 256;
-            self.drift[n] += (added - self.drift[n]) / if hums { HUM_FRAMES } else { f.rest_frames.max(1) };
-        }
-        // What was added is no more than what is there.
-        for (n, Electrode { uv, .. }) in electrodes.into_iter().enumerate() {
             let Some(uv) = uv else { continue };
             let added = (uv - sites.rest_uv[n]).min(MOST_DRIFT_UV) * 256;
-            if added < self.drift[n] && self.drift[n] > 0 {
+            if hums {
+                self.hum_uv[n] = uv;
+            }
+            if self.calm >= CALM_FRAMES || hums {
+                let frames = if hums { HUM_FRAMES } else { f.rest_frames.max(1) };
+                self.drift[n] += (added - self.drift[n]) / frames;
+            }
+            // What was added is no more than what is there; hum is constant, so what falls below it is none.
+            if uv < self.hum_uv[n] - self.hum_uv[n] / HUM_PART {
+                (self.drift[n], self.hum_uv[n]) = (0, 0);
+            } else if added < self.drift[n] && self.drift[n] > 0 {
                 self.drift[n] += (added.max(0) - self.drift[n]) / 8;
             }
         }

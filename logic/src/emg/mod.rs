@@ -90,6 +90,8 @@ pub struct Verdict {
     pub strength_permille: u16,
     /// An unproven contraction moves the hand slowly and little.
     pub proven: bool,
+    /// The other electrode rose as the wish began: less than a proof, but more than a lifted electrode shows.
+    pub heard: bool,
     /// Activity of any kind: the reflex is silent.
     pub active: bool,
     /// Both myosensors are healthy; if not, "not active" is not known.
@@ -188,6 +190,7 @@ impl Emg {
             wish,
             strength_permille: self.decide.strength_permille(),
             proven,
+            heard: wish != Wish::Rest && self.proof.at_once,
             active: flexor.is_active() || extensor.is_active() || wish != Wish::Rest,
             known: flexor.is_known() && extensor.is_known(),
             half_known: false,

@@ -14,6 +14,8 @@ const BEFORE: usize = 5;
 const LEAST_HEARD: i32 = 123;
 /// Slow frames from the begin of a wish in which the other electrode has to rise: 1.5 s.
 const HEARD_FRAMES: u16 = 120;
+/// Slow frames from the begin of a wish in which the other electrode rises at once: 38 ms.
+const AT_ONCE_FRAMES: u16 = 3;
 /// Slow frames in a row that make a rise: one is a glitch.
 const HEARD_FOR: u8 = 2;
 /// Gradual rise: at most [`MOST_IN_BLOCK`] of it in a block, per mille, and at least [`PART_OF_BLOCK`] in [`BLOCKS_OF_RISE`] blocks.
@@ -27,6 +29,8 @@ const APART_PART: i32 = 12;
 const GOES_ON_FRAMES: u16 = 8;
 /// Slow frames for which a proven opening above the sensor's range stays proven: 0.5 s.
 const OVER_FRAMES: u16 = 40;
+/// Slow frames after a doubt within which an opening may have begun during it: 0.5 s.
+const RETURNED_FRAMES: u8 = 40;
 /// Each unproven opening makes the next harder to believe, three times at most; 10 s of rest take one back.
 const MOST_WARY: u8 = 3;
 const WARY_FRAMES: u16 = 800;
@@ -91,6 +95,8 @@ pub struct Proof {
     before: [i32; 2],
     hears: u8,
     heard: bool,
+    /// The other electrode rose by twice its least rise within [`AT_ONCE_FRAMES`] of the wish's begin.
+    pub at_once: bool,
     apart: bool,
     proven: bool,
     over: u16,
@@ -98,6 +104,9 @@ pub struct Proof {
     wary: u8,
     rest: u16,
     swings: [Swings; 2],
+    /// Slow frames for which the mover's last doubt counts, and the other electrode's lowest level since it began.
+    returned: u8,
+    lowest: i32,
 }
 
 impl Proof {
@@ -114,31 +123,42 @@ impl Proof {
         raised: bool,
     ) -> bool {
         self.keep(levels);
+        self.doubt(wish, 1 - mover, !trust.is_good());
         self.begin(wish);
+        if self.age == 0 && self.returned > 0 {
+            // An electrode that is seated again during a contraction has not seen it begin.
+            self.before[(1 - mover) & 1] = self.lowest;
+        }
         if wish == Wish::Rest {
             return false;
         }
         let over = levels[mover & 1].is_some_and(|level| level >= const { level_of(OVER_UV) });
         self.over = if over { self.over.saturating_add(1) } else { 0 };
         self.age = self.age.saturating_add(1);
-        let heard = hears.map(|[rest, rise]| {
-            self.rise(1 - mover, levels[(1 - mover) & 1], rest)
-                >= rise.max(LEAST_HEARD) * (1 + i32::from(self.wary))
+        let heard = hears.map(|[rest, least]| {
+            let (rise, least) = (self.rise(1 - mover, levels[(1 - mover) & 1], rest), least.max(LEAST_HEARD));
+            self.at_once |= self.returned == 0 && self.age <= AT_ONCE_FRAMES && rise >= 2 * least;
+            rise >= least * (1 + i32::from(self.wary))
         });
         self.hears = if heard == Some(true) { self.hears.saturating_add(1) } else { 0 };
         self.heard |= self.age <= HEARD_FRAMES && self.hears >= HEARD_FOR;
         if !self.proven {
             self.proven = match (heard, wish) {
                 (Some(_), Wish::Open) => {
-                    self.apart = self.apart || self.rise_apart();
+                    let returned = self.returned > 0 && trust.has_turned_twice();
+                    self.apart = self.apart || returned || self.rise_apart();
                     self.heard && self.apart && (trust.has_turned() || self.is_gradual(mover))
                 }
                 _ => self.heard || trust.has_turned_twice(),
             };
         }
         if self.over > OVER_FRAMES || !(over || trust.is_sound() && raised) {
-            // The contraction is over, or no muscle's: a later one has to be heard again.
-            (self.proven, self.heard, self.age) = (false, false, HEARD_FRAMES);
+            self.proven = false;
+            if !(raised && trust.returns()) {
+                // The contraction is over, or no muscle's: a later one has to be heard again.
+                self.heard = false;
+                self.age = if raised && trust.is_constant() { 0 } else { HEARD_FRAMES };
+            }
         }
         self.proven &= !trust.is_straight();
         if self.proven {
@@ -173,6 +193,16 @@ impl Proof {
         }
     }
 
+    fn doubt(&mut self, wish: Wish, other: usize, is_doubted: bool) {
+        if is_doubted {
+            let before = self.before(other);
+            self.lowest = if self.returned < RETURNED_FRAMES { before } else { self.lowest.min(before) };
+            self.returned = RETURNED_FRAMES;
+        } else if wish != Wish::Open {
+            self.returned = self.returned.saturating_sub(1);
+        }
+    }
+
     fn begin(&mut self, wish: Wish) {
         self.last.1 = if self.proven { 0 } else { self.last.1.saturating_add(1) };
         if self.proven {
@@ -193,7 +223,7 @@ impl Proof {
         // Not for rest, which is never proven.
         self.heard = wish == self.last.0 && self.last.1 < GOES_ON_FRAMES;
         self.apart = self.heard;
-        self.proven = false;
+        (self.at_once, self.proven) = (false, false);
     }
 
     pub fn levels(&self) -> Point {

@@ -14,7 +14,7 @@ const STILL_UV: i32 = 1_500;
 /// Slow frames of a constant envelope that is doubted: 1 s. Sound recordings have 0.77 s at most.
 const FLAT_FRAMES: u16 = 80;
 /// Hum varies by less than 1/16 of its level.
-const HUM_PART: i32 = 16;
+pub const HUM_PART: i32 = 16;
 /// Slow frames of rise without a fall of 3 %: 2.5 s. Sound recordings have 2 s at most.
 const CREEP_FRAMES: u16 = 200;
 /// Slow frames at the top of the range: 1.5 s. Recordings have 0.35 s.
@@ -215,17 +215,26 @@ impl Trust {
         matches!(self.quality, Quality::Good)
     }
 
+    /// Doubted, and without the reason of it: seated again, or at rest.
+    pub const fn returns(&self) -> bool {
+        !self.is_good() && self.good > 0
+    }
+
     pub const fn is_still(&self) -> bool {
         self.flat >= FLAT_FRAMES / 5
     }
 
-    pub fn hums(&self) -> bool {
-        matches!(self.quality, Quality::Flat | Quality::Hum) && self.flat >= FLAT_FRAMES
+    /// Doubted since it was constant.
+    pub const fn is_constant(&self) -> bool {
+        matches!(self.quality, Quality::Flat | Quality::Hum)
+    }
+
+    pub const fn hums(&self) -> bool {
+        self.is_constant() && self.flat >= FLAT_FRAMES
     }
 
     pub fn hums_at(&self, uv: i32) -> bool {
-        matches!(self.quality, Quality::Flat | Quality::Hum)
-            && (uv - self.hum_uv).abs() <= self.hum_uv / HUM_PART + STILL_UV
+        self.is_constant() && (uv - self.hum_uv).abs() <= self.hum_uv / HUM_PART + STILL_UV
     }
 
     /// One proof within the last second: the envelope fell back by 3 % or curved.

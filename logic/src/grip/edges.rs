@@ -11,7 +11,10 @@ fn config() -> GripConfig {
 fn a_bound_reflex_spends_its_budget_whatever_is_felt_and_the_line_does_not() {
     let config = config();
     let holds = Grip::Holds(5_000);
-    let mut reflex = Reflex { blind: config.blind_frames - 1, ..Reflex::default() };
+    let mut reflex = Reflex {
+        account: Account { blind: config.blind_frames - 1, ..Account::default() },
+        ..Reflex::default()
+    };
     reflex.bind(true);
     assert!(reflex.may_close(&config, holds));
     reflex.tick(GripMode::Slip, holds);
@@ -21,7 +24,7 @@ fn a_bound_reflex_spends_its_budget_whatever_is_felt_and_the_line_does_not() {
     assert!(reflex.may_close(&config, holds));
     assert!(!reflex.may_close(&config, Grip::Holds(config.ceiling_mn)));
     reflex.tick(GripMode::Slip, holds);
-    assert_eq!(reflex.blind, config.blind_frames, "a force that is felt spends nothing");
+    assert_eq!(reflex.account.blind, config.blind_frames, "a force that is felt spends nothing");
 }
 
 #[test]

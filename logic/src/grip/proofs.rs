@@ -22,7 +22,8 @@ fn at_the_ceiling_nothing_closes_whatever_state_the_reflex_is_in() {
         for (blind, bound) in
             [0, budget - 1, budget, u32::MAX].map(|blind| [(blind, false), (blind, true)]).concat()
         {
-            let reflex = Reflex { blind, bound, ..Reflex::default() };
+            let reflex =
+                Reflex { account: Account { blind, ..Account::default() }, bound, ..Reflex::default() };
             for mn in 0..=61_000 {
                 let (grip, below) = (Grip::Holds(mn), mn < ceiling_mn);
                 assert_eq!(reflex.link_may_close(&config, grip), below);
@@ -75,7 +76,12 @@ fn reachable(config: &GripConfig, grips: &[Grip], bound: bool) -> BTreeSet<State
         let mut reached = Vec::new();
         for (&grip, first) in grips.iter().flat_map(|grip| causes.map(|cause| (grip, cause))) {
             for (second, slips) in causes.map(|cause| [(cause, false), (cause, true)]).concat() {
-                let mut reflex = Reflex { blind, elapsed, bound, ..Reflex::default() };
+                let mut reflex = Reflex {
+                    account: Account { blind, ..Account::default() },
+                    elapsed,
+                    bound,
+                    ..Reflex::default()
+                };
                 let (mut mode, mut closed) = (MODES[mode], closed);
                 for cause in [first, second].into_iter().flatten() {
                     let asked = !matches!(cause, Cause::Slip(_) | Cause::Incipient(_))
@@ -92,7 +98,7 @@ fn reachable(config: &GripConfig, grips: &[Grip], bound: bool) -> BTreeSet<State
                 closed += u32::from(closes(mode));
                 reflex.tick(mode, grip);
                 let longest = config.slip_frames_max + config.settle_frames;
-                let Reflex { blind, elapsed, .. } = reflex;
+                let Reflex { account: Account { blind, .. }, elapsed, .. } = reflex;
                 reached.push((mode as usize, blind, elapsed.min(longest), closed));
             }
         }

@@ -39,7 +39,7 @@ settings! {
     27 IncipientPulse "incipient-pulse-ms" "ms" [5, 50] = 15 => Ms(incipient_frames);
     /// Time after a pulse in which no slip is answered, longer than the motor's dead time
     28 Settle "settle-ms" "ms" [40, 150] = 80 => Ms(settle_frames);
-    /// Blind budget: closing time of the reflex in all while the force is unknown or an electrode is lost; an active muscle renews it
+    /// Blind budget: closing time of the reflex in all while the force is unknown or an electrode is lost; a proven contraction or an empty hand renews it
     29 Blind "blind-ms" "ms" [0, 400] = 200 => Ms(blind_frames);
     /// After 5 s without slip the reflex releases the force that it added, down to what stops a sliding object: 0 never, 1 without a
     /// wearer, 2 always

@@ -1,6 +1,5 @@
 //! S1 as a detector: the conditioning has compared the envelope already.
 
-use tenax_hal_shim::channel::SLOW_HZ;
 use tenax_hal_shim::detector::{DetectorHealth, DetectorId, Direction};
 
 use crate::detectors::{Description, Detector, Said, Sensed, confidence};
@@ -14,8 +13,6 @@ pub struct S1 {
 
 impl Detector for S1 {
     const ID: DetectorId = DetectorId::S1;
-    // Impacts, strokes over a table and the motor vibrate an empty hand too, and are soon over.
-    const IMPLAUSIBLE_AFTER: u16 = SLOW_HZ as u16 / 2;
     type Config = VibrationConfig;
 
     fn step(&mut self, _config: &VibrationConfig, sensed: &Sensed<'_>) -> Option<Said> {

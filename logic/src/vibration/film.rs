@@ -1,7 +1,7 @@
 //! Conditioning of one film: less [`hum`](super::hum), high-pass, low-pass, rectifier (a film's sign means
 //! nothing: Tada 2006, section 2), low-pass; Q16 around mid-scale, off by at most 0.0006 of a sample.
 
-use super::hum::{Mains, Turn, Weights};
+use super::hum::{Turn, Weights};
 use crate::low_pass::LowPass;
 
 const BAND_LOW_HZ: u32 = 20;
@@ -27,9 +27,9 @@ impl Default for Band {
 #[derive(Clone, Debug, Default)]
 pub struct Film {
     offset: i32,
-    band: i32,
-    envelope: i32,
-    hum: Weights,
+    pub(super) band: i32,
+    pub(super) envelope: i32,
+    pub(super) hum: Weights,
     primed: bool,
 }
 
@@ -40,10 +40,6 @@ pub struct Levels {
 }
 
 impl Film {
-    pub const fn level(&self) -> i32 {
-        self.envelope
-    }
-
     /// The first sample is the offset, so that power-up is no vibration; later calls change nothing.
     pub fn prime(&mut self, sample: u16) {
         if !self.primed {
@@ -58,11 +54,6 @@ impl Film {
         let ac = x - band.low.process(&mut self.offset, x);
         let low = band.high.process(&mut self.band, ac);
         Levels { envelope: ENVELOPE.process(&mut self.envelope, low.abs()), above: (ac - low).abs() }
-    }
-
-    #[inline]
-    pub fn adapt(&mut self, mains: &mut Mains, mains_60_hz: bool) {
-        mains.adapt(mains_60_hz, &mut self.hum, self.band);
     }
 }
 
@@ -82,6 +73,7 @@ const fn centred(sample: u16) -> i32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::vibration::hum::Mains;
     use core::f64::consts::PI;
     use tenax_hal_shim::channel::{FRAME_HZ, SAMPLE_MAX};
 

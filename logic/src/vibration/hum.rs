@@ -1,13 +1,14 @@
 //! Mains hum, taken off each PVDF film before its filters. One oscillator (coupled form, amplitude 2^29) is
 //! shared; each film has weights of its cosine and sine (Q19) and adapts (LMS) 83 times a second by the error in
-//! its band. The oscillator follows the frequency by the votes of weights that turn.
+//! its band. The oscillator starts at the nominal frequency and follows the mains by the votes of weights that turn.
 
 use tenax_hal_shim::channel::{FRAME_HZ, PVDF_COUNT};
 
 const AMPLITUDE: i32 = 1 << 29;
 const WEIGHT_MAX: i32 = 1 << 30;
-/// Largest error that can be hum's alone, Q16: 64 samples.
-const ERROR_MAX: i32 = 64 << 16;
+/// Least limit of an error, Q16: 256 samples. Slip is shorter than what it takes to learn a louder hum by these
+/// steps; hum that was learned and stops or jumps in phase is as large as itself.
+const ERROR_MAX: i32 = 256 << 16;
 const EVERY: usize = 2;
 /// Four times the upper word of error times oscillator is 1/16 of the error.
 const RATE: i32 = 4;
@@ -16,6 +17,7 @@ const PER_HZ: f64 = 2.0 * core::f64::consts::PI / FRAME_HZ as f64 * 4_294_967_29
 /// Mains, Hz, and the oscillator's largest distance from it.
 const NOMINAL_HZ: [f64; 2] = [50.0, 60.0];
 const OFF_HZ: f64 = 1.0;
+const STEPS: [i32; 2] = [step(NOMINAL_HZ[0]), step(NOMINAL_HZ[1])];
 const WITHIN: [[i32; 2]; 2] = [within(NOMINAL_HZ[0]), within(NOMINAL_HZ[1])];
 const VOTE: i32 = (0.25 * EVERY as f64 / FRAME_HZ as f64 * PER_HZ) as i32;
 
@@ -36,6 +38,12 @@ impl Weights {
     pub const fn heard(self, now: Turn) -> i32 {
         high(self.cosine, now.cosine).wrapping_add(high(self.sine, now.sine))
     }
+
+    /// Amplitude of the hum, Q16, or 0.7 of it.
+    #[inline]
+    pub fn level(self) -> i32 {
+        self.cosine.abs().max(self.sine.abs()) >> 3
+    }
 }
 
 #[derive(Clone, Debug)]
@@ -43,11 +51,12 @@ pub struct Mains {
     now: Turn,
     step: i32,
     ticks: u8,
+    is_60_hz: bool,
 }
 
 impl Default for Mains {
     fn default() -> Self {
-        Self { now: Turn { cosine: AMPLITUDE, sine: 0 }, step: step(NOMINAL_HZ[0]), ticks: 0 }
+        Self { now: Turn { cosine: AMPLITUDE, sine: 0 }, step: STEPS[0], ticks: 0, is_60_hz: false }
     }
 }
 
@@ -90,14 +99,23 @@ impl Mains {
         0
     }
 
+    /// Begins anew at the nominal frequency if it is another one.
+    pub const fn tune(&mut self, is_60_hz: bool) {
+        if self.is_60_hz != is_60_hz {
+            self.is_60_hz = is_60_hz;
+            self.step = STEPS[is_60_hz as usize];
+        }
+    }
+
     #[inline]
-    pub fn adapt(&mut self, mains_60_hz: bool, film: &mut Weights, error: i32) {
-        let [slowest, fastest] = WITHIN[usize::from(mains_60_hz)];
-        let error = error.clamp(-ERROR_MAX, ERROR_MAX);
+    pub fn adapt(&mut self, film: &mut Weights, error: i32) {
+        let [slowest, fastest] = WITHIN[usize::from(self.is_60_hz)];
+        let most = film.level().max(ERROR_MAX);
+        let error = error.clamp(-most, most);
         let (by_cosine, by_sine) = (high(error, self.now.cosine), high(error, self.now.sine));
         // Sign of the weights' turn: back, if the mains is ahead of the oscillator.
-        let ahead = high(film.sine, by_cosine << 8) - high(film.cosine, by_sine << 8);
-        self.step = (self.step + VOTE * ahead.signum()).max(slowest).min(fastest);
+        let ahead = i64::from(film.sine) * i64::from(by_cosine) - i64::from(film.cosine) * i64::from(by_sine);
+        self.step = (self.step + VOTE * ahead.signum() as i32).max(slowest).min(fastest);
         film.cosine = (film.cosine + RATE * by_cosine).clamp(-WEIGHT_MAX, WEIGHT_MAX);
         film.sine = (film.sine + RATE * by_sine).clamp(-WEIGHT_MAX, WEIGHT_MAX);
     }

@@ -1,10 +1,11 @@
 //! S1: slip from the vibration of the PVDF films, 20 to 150 Hz (Prosthesis, sections 4 and 5). An impact rings
-//! above the band and is over soon, so S1 needs a loud band with a quieter sound above it, or one that stays.
+//! above the band and is over soon, so S1 needs a loud band with a quieter sound above it, or one that stays. What
+//! stands for longer than a slip is [`noise`]: S1 needs several times as much.
 
-pub mod channel_mask;
 pub mod detector;
 mod film;
 pub mod hum;
+mod noise;
 pub mod quality;
 pub mod settings;
 pub mod sliding;
@@ -12,10 +13,10 @@ pub mod sliding;
 use tenax_hal_shim::channel::PVDF_COUNT;
 use tenax_hal_shim::wire::TickRecord;
 
-use self::channel_mask::ChannelMask;
 pub(crate) use self::film::Q;
 use self::film::{Band, ENVELOPE, Film, Levels};
 use self::hum::{Mains, Turn};
+use self::noise::Noise;
 use self::sliding::{Hand, Sliding};
 use crate::vibration::settings::VibrationConfig;
 
@@ -57,7 +58,7 @@ pub struct VibrationDetector {
     peak_at: u32,
     rang_frames: u32,
     s1: bool,
-    mask: ChannelMask,
+    noise: Noise,
     sliding: Sliding,
     slides: bool,
 }
@@ -72,8 +73,8 @@ impl VibrationDetector {
         trusts: Option<&[Trust; PVDF_COUNT]>,
     ) -> Vibration {
         let mains = self.mains.turn();
-        if self.mask.masked != 0 {
-            let trusts = self.with_masks(config, trusts);
+        if self.noise.left_out != 0 {
+            let trusts = self.without_noisy(trusts);
             let loudest = self.process_each(samples, &trusts, mains);
             return self.judge(config, loudest);
         }
@@ -85,29 +86,20 @@ impl VibrationDetector {
         self.judge(config, loudest)
     }
 
+    #[inline(never)]
+    fn without_noisy(&self, trusts: Option<&[Trust; PVDF_COUNT]>) -> [Trust; PVDF_COUNT] {
+        let mut trusts = *trusts.unwrap_or(&[Trust::Full; PVDF_COUNT]);
+        let noisy = trusts.iter_mut().enumerate().filter(|(film, _)| self.noise.left_out >> film & 1 != 0);
+        noisy.filter(|(_, trust)| **trust == Trust::Full).for_each(|(_, trust)| *trust = Trust::Doubtful);
+        trusts
+    }
+
     /// Another sensor takes the film's place, and the jump is no vibration.
     pub fn forget(&mut self, film: usize) {
         if let Some(film) = self.films.get_mut(film) {
             *film = Film::default();
             self.all_primed = false;
         }
-    }
-
-    #[inline(never)]
-    fn with_masks(
-        &mut self,
-        config: &VibrationConfig,
-        trusts: Option<&[Trust; PVDF_COUNT]>,
-    ) -> [Trust; PVDF_COUNT] {
-        let mut masked = trusts.copied().unwrap_or([Trust::Full; PVDF_COUNT]);
-        let on = i32::from(config.s1) << Q;
-        for (n, (trust, film)) in masked.iter_mut().zip(&self.films).enumerate() {
-            if *trust == Trust::Full && self.mask.is_masked(n) {
-                self.mask.check_masked(n, film.level(), on);
-                *trust = Trust::Doubtful;
-            }
-        }
-        masked
     }
 
     #[inline]
@@ -130,9 +122,8 @@ impl VibrationDetector {
     ) -> Levels {
         let mut loudest = Levels::default();
         self.all_primed = true;
-        for (((film, own), &sample), &trust) in
-            self.films.iter_mut().zip(&mut self.envelopes).zip(samples).zip(trusts)
-        {
+        let films = self.films.iter_mut().zip(&mut self.envelopes).zip(samples).zip(trusts);
+        for (((film, own), &sample), &trust) in films {
             // Suspect PVDF channels are masked, their held envelope included.
             *own = 0;
             if trust == Trust::None {
@@ -155,20 +146,16 @@ impl VibrationDetector {
         let Levels { envelope, above } = loudest;
         let asked = self.mains.asks();
         if let Some(film) = asked.and_then(|film| self.films.get_mut(film)) {
-            film.adapt(&mut self.mains, config.mains_60_hz);
+            self.mains.adapt(&mut film.hum, film.band);
         }
         let above = ENVELOPE.process(&mut self.above, above);
-        let on = i32::from(config.s1) << Q;
+        let set = i32::from(config.s1) << Q;
+        let on = set + self.noise.raised;
         // Half the threshold keeps it on: the envelope of one slip has dips.
-        let loud = envelope > if self.s1 { on / 2 } else { on };
-        if loud {
-            self.mask.count_loud(&self.envelopes, on);
-        } else {
-            self.mask.count_quiet();
-        }
+        let loud = envelope > if self.s1 { on - on.min(set) / 2 } else { on };
         self.loud_frames = if loud { self.loud_frames.saturating_add(1) } else { 0 };
         // A quiet film's noise is mostly above the band too, but no impact is as quiet.
-        let rings = above > i32::from(config.impact_level) << Q
+        let rings = above > (i32::from(config.impact_level) << Q).min(on / 2)
             && i64::from(above) * 1_000 > i64::from(envelope) * i64::from(config.impact_permille);
         self.ringing_frames = if rings { self.ringing_frames.saturating_add(1) } else { 0 };
         self.rang_frames = if loud { self.rang_frames.saturating_add(rings.into()) } else { 0 };
@@ -186,8 +173,15 @@ impl VibrationDetector {
             s1: self.s1,
             impact: rings && self.ringing_frames < config.impact_frames,
             slides: self.slides,
-            masked: self.mask.masked,
+            masked: self.noise.noisy,
         }
+    }
+
+    /// Call it once a slow frame.
+    #[inline(never)]
+    pub fn learn_noise(&mut self, config: &VibrationConfig, empty_hand: bool) {
+        self.noise.step(&self.films, config.s1, empty_hand);
+        self.mains.tune(config.mains_60_hz ^ self.noise.other_mains);
     }
 
     pub fn slow(&mut self, hand: &Hand) {

@@ -111,7 +111,7 @@ impl Attendant<'_, '_> {
             if diagnosed.elapsed() >= DIAGNOSE_EVERY {
                 diagnosed = Instant::now();
                 let counts = self.client.counts();
-                (self.health.missed, self.health.bad_frames) = (counts.missed, counts.bad_frames);
+                self.health.count(counts.missed, counts.bad_frames, now_ns());
                 self.topics.diagnostics.publish(&self.health.diagnostics(self.name, now_ns()))?;
             }
         }

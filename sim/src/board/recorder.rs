@@ -4,7 +4,6 @@ use tenax_hal_shim::frame::Scan;
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::Slow;
 
-use tenax_frames::record::Recording;
 use tenax_frames::serve::Server;
 
 use super::Run;
@@ -49,12 +48,6 @@ impl Recorder for Run {
 
     fn line(&mut self, bytes: &[u8]) {
         self.line.extend_from_slice(bytes);
-    }
-}
-
-impl Recorder for Recording {
-    fn line(&mut self, bytes: &[u8]) {
-        Self::line(self, bytes);
     }
 }
 

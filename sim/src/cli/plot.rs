@@ -7,7 +7,7 @@ use anyhow::Context;
 
 use crate::plot::sheet::draw;
 use crate::session;
-use tenax_frames::link::captured::line_of;
+use tenax_frames::link::Captured;
 use tenax_frames::tool::out;
 
 const EXAMPLES: &str = "\
@@ -28,7 +28,7 @@ pub struct Args {
 
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     let name = session::name_of(&args.file);
-    let outcome = session::recorded(&name, &line_of(&args.file)?)?;
+    let outcome = session::recorded(&name, &Captured::open(&args.file)?)?;
     let path = args.out.clone().unwrap_or_else(|| args.file.with_extension("svg"));
     std::fs::write(&path, draw::svg(&outcome.figure)?)
         .with_context(|| format!("cannot write {}", path.display()))?;

@@ -4,11 +4,14 @@ use std::fs;
 use std::io::{self, BufWriter, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::mpsc::Receiver;
 use std::thread;
 
 use anyhow::Context;
 use clap::ArgGroup;
+use tenax_hal_shim::channel;
 use tenax_scene::act::KEYS;
 use tenax_scene::{SceneFile, builtin};
 
@@ -24,9 +27,8 @@ use tenax_frames::record::Recording;
 use tenax_frames::serve::{self, Down, Server};
 use tenax_frames::tool::folder;
 use tenax_frames::tool::format::Format;
-use tenax_frames::tool::out;
 use tenax_frames::tool::progress::Progress;
-use tenax_frames::tool::workspace;
+use tenax_frames::tool::{out, stop, workspace};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -36,6 +38,8 @@ Examples:
   tenax run --host --controls               beside no reflex, a constant grip and each detector alone
   tenax run --replay touch.csv              a recording, with the recipe that its name calls for
   tenax run --replay my.csv --recipe my.toml
+  tenax run --replay my.csv --explain       what its columns and times are taken for
+  tenax run --replay my.csv --suggest-recipe > my.toml
   tenax run --report json > report.json     for programs
   tenax run --serve                         at real time, with its serial line on a pseudo-terminal
   tenax run --host --serve-tcp 7777         on TCP port 7777 of this machine only
@@ -61,6 +65,12 @@ pub struct Args {
     /// Recipe that maps the recording's columns to pins: a file, or a name in recipes/ [default: by the recording's name]
     #[arg(long, value_name = "FILE.toml|NAME", requires = "replay")]
     recipe: Option<String>,
+    /// Print what the recording's columns, times and first rows are taken for, and end
+    #[arg(long, requires = "replay")]
+    explain: bool,
+    /// Print a recipe to begin with, by how the recording's table looks, and end
+    #[arg(long, requires = "replay", conflicts_with_all = ["recipe", "explain"])]
+    suggest_recipe: bool,
     /// First calibrate the myosensors with these three recordings [default: not calibrated]
     #[arg(long, value_name = "REST.csv,CLOSE.csv,OPEN.csv", value_delimiter = ',', requires = "replay")]
     calibrate_emg: Option<Vec<PathBuf>>,
@@ -106,20 +116,32 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         out::say!("{outcome}")?;
         return Ok(ExitCode::from(u8::from(outcome.difference.is_some())));
     }
+    if let (true, Some(path)) = (args.suggest_recipe, &args.replay) {
+        out::print(format_args!("{}", replay::suggest::suggest(path)?))?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    if let (true, Some(path)) = (args.explain, &args.replay) {
+        let (recording, named) = replay::library::read(path, args.recipe.as_deref())?;
+        let goes_to = |column: &str| match &named {
+            Some(named) => named.recipe.goes_to(column),
+            None => channel::by_name(column).map_or(String::new(), |_| column.to_owned()),
+        };
+        out::print(format_args!("{}", recording.explained(&goes_to)))?;
+        return Ok(ExitCode::SUCCESS);
+    }
     let folder = folder::made(&args.out)?;
     // What is to be run is looked at before the image is built, which can take minutes.
     let subject = match &args.replay {
         Some(path) => Subject::Recording(path, replay::library::read(path, args.recipe.as_deref())?.0),
         None => Subject::Scene(Box::new(session::load_scene(&args.scene)?)),
     };
-    let name = match &subject {
-        Subject::Recording(path, _) => session::name_of(path),
-        Subject::Scene(file) => file.name.clone(),
+    // A scene's name is no file's: it may have a point, as in `a-0.3`.
+    let stem = match &subject {
+        Subject::Recording(path, _) => path.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
+        Subject::Scene(file) => file.name.replace(['/', '\\'], "-"),
     };
-    let stem = Path::new(&name).file_stem().map_or("run".into(), |stem| stem.to_string_lossy());
     let path = |extension: &str| folder.join(format!("{stem}.{extension}"));
     let board = if args.host { Board::Host } else { Board::emulated(&workspace::root()?)? };
-    let mut line = LineFile::create(path("line.bin"));
     let (mut server, down) = served(args)?.unzip();
     let person = Person::default();
     if let Some(server) = &mut server {
@@ -129,19 +151,20 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     if let (true, Subject::Scene(file), Some(server)) = (args.repeat, &subject, &mut server) {
         return again_and_again(file, args.seed, &board, server, &person, &live);
     }
-    let mut recording = args.record.as_deref().map(Recording::create).transpose()?;
-    let line_use = Use { live: live(), streams_at_start: recording.is_some() };
-    let (mut no_server, mut no_recording) = ((), ());
+    let stop = stop::on_signals()?;
+    let recording = args.record.as_deref().map(Recording::create).transpose()?;
+    let mut kept = Kept::create(path("line.bin"), recording, Arc::clone(&stop))?;
+    let line_use = Use { live: live(), streams_at_start: args.record.is_some(), stop };
+    let mut no_server = ();
     let to_server = server.as_mut().map_or::<&mut dyn Recorder, _>(&mut no_server, |own| own);
-    let to_recording = recording.as_mut().map_or::<&mut dyn Recorder, _>(&mut no_recording, |own| own);
-    let recorder = &mut (&mut (&mut line, to_server), to_recording);
-    let outcome = match &subject {
+    let recorder = &mut (&mut kept, to_server);
+    let run = || match &subject {
         Subject::Recording(file, recording) => {
             let progress = Progress::new("replay", recording.duration_s());
             let (recipe, seed) = (args.recipe.as_deref(), args.seed);
             let calibrate = |recordings: &Vec<PathBuf>| calibrate::calibrate(recordings, recipe, seed);
             let wearer = (recipe, args.calibrate_emg.as_ref().map(calibrate).transpose()?);
-            session::replay_served(file, wearer, line_use, seed, &board, recorder, &mut |s| progress.at(s))?
+            session::replay_served(file, wearer, line_use, seed, &board, recorder, &mut |s| progress.at(s))
         }
         Subject::Scene(file) => {
             let progress = Progress::new(&format!("scene {}", file.name), file.duration_s());
@@ -150,24 +173,21 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
             if args.controls {
                 outcome.report.controls = session::controls::controls(file, args.seed, &outcome.truth);
             }
-            outcome
+            Ok(outcome)
         }
     };
+    let outcome = run();
+    let mut files = kept.close(args.record.as_deref())?;
     if let Some(server) = server {
         out::note!("  {:<14}{}", "served", server.close());
     }
+    let outcome = outcome?;
     let svg = draw::svg(&outcome.figure)?.into_bytes();
-    let mut files = Vec::new();
     for (extension, bytes) in [("svg", svg), ("json", serde_json::to_vec_pretty(&outcome.report)?)] {
         let path = path(extension);
         fs::write(&path, bytes).with_context(|| format!("cannot write {}", path.display()))?;
         files.push(path);
     }
-    if let (Some(recording), Some(path)) = (recording, &args.record) {
-        recording.finish().with_context(|| format!("cannot write {}", path.display()))?;
-        files.push(path.clone());
-    }
-    files.push(line.close()?);
     args.report.print(&Text(&outcome.report), &outcome.report)?;
     // On stderr, so that a program that reads the report reads nothing else.
     for file in files {
@@ -276,7 +296,7 @@ fn again_and_again(
     live: &dyn Fn() -> Option<Live>,
 ) -> anyhow::Result<ExitCode> {
     for seed in seed.. {
-        let line = Use { live: live(), streams_at_start: false };
+        let line = Use { live: live(), ..Use::default() };
         let outcome = session::scene_alone(file, seed, board, line, server)?;
         let fate = if outcome.truth.dropped { "DROPPED" } else { "kept" };
         let how = if person.lets_go() { "is reset" } else { "is switched on anew" };
@@ -285,31 +305,46 @@ fn again_and_again(
     Ok(ExitCode::SUCCESS)
 }
 
-/// The serial line's bytes, written to a file as they come, until the first error.
-struct LineFile {
+/// Files that the line goes to as it comes. An error ends the run.
+struct Kept {
     path: PathBuf,
-    file: io::Result<BufWriter<fs::File>>,
+    line: BufWriter<fs::File>,
+    recording: Option<Recording>,
+    stop: Arc<AtomicBool>,
+    error: Option<anyhow::Error>,
 }
 
-impl LineFile {
-    fn create(path: PathBuf) -> Self {
-        Self { file: fs::File::create(&path).map(BufWriter::new), path }
+impl Kept {
+    fn create(path: PathBuf, recording: Option<Recording>, stop: Arc<AtomicBool>) -> anyhow::Result<Self> {
+        let file = fs::File::create(&path).with_context(|| format!("cannot write {}", path.display()))?;
+        Ok(Self { path, line: BufWriter::new(file), recording, stop, error: None })
     }
 
-    /// Fails if the bytes could not be written.
-    fn close(self) -> anyhow::Result<PathBuf> {
-        let flushed = self.file.and_then(|mut file| file.flush());
-        flushed.with_context(|| format!("cannot write {}", self.path.display()))?;
-        Ok(self.path)
+    fn cannot(&self) -> String {
+        format!("cannot write {}", self.path.display())
+    }
+
+    fn write(&mut self, bytes: &[u8]) -> anyhow::Result<()> {
+        self.line.write_all(bytes).with_context(|| self.cannot())?;
+        self.recording.as_mut().map_or(Ok(()), |recording| recording.line(bytes))
+    }
+
+    /// Ends the files, of a run that was stopped too. Fails if one could not be written.
+    fn close(mut self, recorded: Option<&Path>) -> anyhow::Result<Vec<PathBuf>> {
+        self.error.take().map_or(Ok(()), Err)?;
+        self.line.flush().with_context(|| self.cannot())?;
+        self.recording.map_or(Ok(()), Recording::finish)?;
+        Ok(recorded.map(Path::to_owned).into_iter().chain([self.path]).collect())
     }
 }
 
-impl Recorder for LineFile {
+impl Recorder for Kept {
     fn line(&mut self, bytes: &[u8]) {
-        if let Ok(file) = &mut self.file
-            && let Err(error) = file.write_all(bytes)
+        if self.error.is_none()
+            && let Err(error) = self.write(bytes)
         {
-            self.file = Err(error);
+            self.error = Some(error);
+            self.stop.store(true, Relaxed);
         }
     }
 }

@@ -8,7 +8,7 @@ use tenax_hal_shim::channel::{ARRAY_COUNT, SAMPLE_MAX, SLOW_HZ};
 
 use super::recipe::ArrayRecipe;
 use super::{Part, Recording, Step};
-use crate::input::{CsvError, number, open, rows};
+use crate::input::{CsvError, Table, open, rows};
 use crate::scorer::{Doing, SlipSpan, onsets};
 
 const GAP_MAX_S: f64 = 0.5;
@@ -20,7 +20,8 @@ pub fn read(path: &Path, recipe: &ArrayRecipe) -> Result<Vec<Recording>, CsvErro
 
 /// Recordings in the order of their first rows; `file` is its name in errors, which say the row and what is allowed.
 pub fn parse(source: impl Read, recipe: &ArrayRecipe, file: &str) -> Result<Vec<Recording>, CsvError> {
-    let mut reader = rows(source);
+    let table = Table::default();
+    let mut reader = rows(source, &table).map_err(|error| CsvError::of(file, error.into()))?;
     let header = reader.headers().map_err(|error| CsvError::of(file, error))?.clone();
     let columns = Columns::find(&header, recipe, file)?;
     let mut all: Vec<Open> = Vec::new();
@@ -28,7 +29,7 @@ pub fn parse(source: impl Read, recipe: &ArrayRecipe, file: &str) -> Result<Vec<
         let record = record.map_err(|error| CsvError::of(file, error))?;
         let line = record.position().map_or(0, csv::Position::line);
         let wrong = |what| CsvError::Row { file: file.to_owned(), line, what };
-        columns.take(&record, recipe, &mut all).map_err(wrong)?;
+        columns.take(&record, (recipe, &table), &mut all).map_err(wrong)?;
     }
     if all.is_empty() {
         return Err(CsvError::File { file: file.to_owned(), what: "no rows below the header".into() });
@@ -72,7 +73,7 @@ impl Columns {
         let place = |column: &String| {
             if_there(Some(column)).ok_or_else(|| {
                 let why = format!("no column `{column}`, which the recipe asks for");
-                CsvError::no_column(file, &why, header)
+                CsvError::no_column(file, &why, header, "")
             })
         };
         let maybe = |column: Option<&String>| column.map(place).transpose();
@@ -106,7 +107,12 @@ impl Columns {
         })
     }
 
-    fn take(&self, record: &StringRecord, recipe: &ArrayRecipe, all: &mut Vec<Open>) -> Result<(), String> {
+    fn take(
+        &self,
+        record: &StringRecord,
+        (recipe, table): (&ArrayRecipe, &Table),
+        all: &mut Vec<Open>,
+    ) -> Result<(), String> {
         let about = self.about(record)?;
         let name = &about.name;
         let place = all.iter().rposition(|open| open.about.name == *name).unwrap_or_else(|| {
@@ -118,7 +124,7 @@ impl Columns {
             return Err(format!("recording `{name}` changes its session, material, part or task here"));
         }
         let t_s = match (self.time, &recipe.array.time, &recipe.array.rate_hz) {
-            (Some(place), Some(column), _) => number(column, &record[place])?,
+            (Some(place), Some(column), _) => table.number(column, &record[place])?,
             (.., Some(rate_hz)) => open.t_s.len() as f64 / rate_hz.get_ref(),
             _ => return Err("neither time nor rate is known".into()),
         };
@@ -137,7 +143,8 @@ impl Columns {
         for ((sample, &place), column) in
             samples.iter_mut().zip(&self.array).zip(recipe.array.columns.get_ref())
         {
-            *sample = recipe.array.offset + recipe.array.scale.get_ref() * number(column, &record[place])?;
+            *sample =
+                recipe.array.offset + recipe.array.scale.get_ref() * table.number(column, &record[place])?;
         }
         open.t_s.push(t_s);
         open.samples.push(samples);

@@ -4,7 +4,6 @@ use std::path::Path;
 
 use anyhow::{Context, Result};
 
-use super::recipe::Time;
 use super::{Recipe, Recording};
 use crate::recipe::{Kind, Named};
 
@@ -13,8 +12,10 @@ pub fn read(path: &Path, asked: Option<&str>) -> Result<(Recording, Option<Named
         Some(asked) => Some(Recipe::asked(asked)?),
         None => Recipe::for_file(path).context("in a recipe of the repository")?,
     };
-    let time = named.as_ref().map_or_else(Time::default, |named| named.recipe.time.clone());
-    let recording = Recording::read(path, &time)?;
+    let (table, time) = named
+        .as_ref()
+        .map_or_else(Default::default, |named| (named.recipe.table(), named.recipe.time.clone()));
+    let recording = Recording::read(path, &table, &time)?;
     let is_channel = |column: &str| tenax_hal_shim::channel::by_name(column).is_some();
     let is_plain = asked.is_none() && recording.signals().all(is_channel);
     Ok((recording, named.filter(|_| !is_plain)))

@@ -5,6 +5,7 @@ use tenax_hal_shim::channel;
 use toml::Spanned;
 
 use super::meaning::Meaning;
+use crate::input::Table;
 use crate::recipe::{self, Checked, Kind, if_within, within};
 
 #[derive(Clone, Debug, Deserialize)]
@@ -15,6 +16,7 @@ pub struct Recipe {
     /// Names of the recordings that it is taken for when no recipe is given; `*` and `?` match as in a shell.
     #[serde(default)]
     pub applies_to: Vec<Spanned<String>>,
+    pub table: Option<Spanned<Table>>,
     #[serde(default)]
     pub time: Time,
     /// How long the first row is held before the recording begins, s: the fingertip's filters and baselines settle in it.
@@ -39,6 +41,14 @@ pub struct Time {
     pub column: Option<String>,
     #[serde(default)]
     pub unit: TimeUnit,
+    /// Rows a second, of a table without a time column.
+    pub rate_hz: Option<Spanned<f64>>,
+}
+
+impl Time {
+    pub fn of_rate(hz: f64) -> Self {
+        Self { rate_hz: Some(Spanned::new(0..0, hz)), ..Self::default() }
+    }
 }
 
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
@@ -50,6 +60,8 @@ pub enum TimeUnit {
     Milliseconds,
     #[serde(rename = "us")]
     Microseconds,
+    #[serde(rename = "ns")]
+    Nanoseconds,
 }
 
 impl TimeUnit {
@@ -58,6 +70,7 @@ impl TimeUnit {
             Self::Seconds => 1.0,
             Self::Milliseconds => 1e3,
             Self::Microseconds => 1e6,
+            Self::Nanoseconds => 1e9,
         }
     }
 }
@@ -146,12 +159,22 @@ impl Recipe {
         self.meaning.iter().find(|meaning| meaning.is_for(file_name))
     }
 
-    pub fn uses(&self, column: &str) -> bool {
-        let mapped = self.map.iter().any(|map| map.column == column);
-        let pressed = self.force.as_ref().is_some_and(|force| {
-            force.normal == column || force.shear_x == column || force.shear_y.as_deref() == Some(column)
+    /// Channels that a column reaches. Empty where it reaches none.
+    pub fn goes_to(&self, column: &str) -> String {
+        let mapped = self.map.iter().filter(|map| map.column == column).flat_map(|map| &map.channels);
+        let pressed = self.force.iter().flat_map(|force| {
+            [
+                ("normal force", Some(&force.normal)),
+                ("shear x", Some(&force.shear_x)),
+                ("shear y", force.shear_y.as_ref()),
+            ]
         });
-        mapped || pressed
+        let pressed = pressed.filter(|(_, own)| own.is_some_and(|own| own == column)).map(|(name, _)| name);
+        mapped.map(|name| name.get_ref().as_str()).chain(pressed).collect::<Vec<_>>().join(", ")
+    }
+
+    pub fn table(&self) -> Table {
+        self.table.as_ref().map_or_else(Table::default, |table| *table.get_ref())
     }
 
     pub fn maps_a_muscle(&self) -> bool {
@@ -174,6 +197,13 @@ impl Kind for Recipe {
     fn check(&self) -> Checked {
         let named = self.meaning.iter().map(|meaning| &meaning.named);
         recipe::check_patterns(self.applies_to.iter().chain(named))?;
+        if let Some(table) = &self.table {
+            table.get_ref().check().map_err(|what| (table.span(), what))?;
+        }
+        if_within(&self.time.rate_hz, "rate_hz", 1.0, 100_000.0)?;
+        if let (Some(rate), Some(_)) = (&self.time.rate_hz, &self.time.column) {
+            return Err((rate.span(), "give either rate_hz or column, not both".into()));
+        }
         within(&self.lead_in_s, "lead_in_s", 0.0, 60.0)?;
         within(&self.lead_out_s, "lead_out_s", 0.0, 60.0)?;
         if self.map.is_empty() && self.force.is_none() {

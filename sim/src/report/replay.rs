@@ -89,7 +89,7 @@ impl Replay {
         wearer: &Wearer,
     ) -> anyhow::Result<Self> {
         let recipe = named.map(|named| &named.recipe);
-        let used = |column: &str| recipe.is_none_or(|recipe| recipe.uses(column));
+        let used = |column: &str| recipe.is_none_or(|recipe| !recipe.goes_to(column).is_empty());
         let muscle = |recipe: &Recipe| -> anyhow::Result<Muscle> {
             let (onset_s, noticed_s) = (muscle_onset_s(recording, recipe)?, wearer.active_first_s);
             Ok(Muscle {
@@ -111,7 +111,11 @@ impl Replay {
             longest_gap_ms: recording.longest_gap_s() * 1e3,
             unused_columns: recording.signals().filter(|column| !used(column)).map(str::to_owned).collect(),
             assumed: recipe.map_or_else(Vec::new, assumed),
-            doubts: recipe.map_or_else(|| Ok(Vec::new()), |recipe| doubts(recording, recipe))?,
+            doubts: [
+                recording.doubts(),
+                recipe.map_or_else(|| Ok(Vec::new()), |own| doubts(recording, own))?,
+            ]
+            .concat(),
             force: recipe.filter(|recipe| recipe.force.is_some()).map(force).transpose()?,
             muscle,
             meant: recipe

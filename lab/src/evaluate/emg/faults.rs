@@ -11,6 +11,7 @@ use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
 use serde::Serialize;
 use tenax_hal_shim::motor::MotorDrive;
+use tenax_logic::account::Account;
 use tenax_logic::config::Config;
 use tenax_logic::emg::Emg;
 use tenax_logic::emg::constants::Fitted;
@@ -144,6 +145,7 @@ struct Outcome {
 struct Hand {
     emg: Emg,
     gate: Gate,
+    account: Account,
     config: GateConfig,
     pairs: u32,
     opened_mm: f64,
@@ -151,7 +153,14 @@ struct Hand {
 
 impl Hand {
     fn new(emg: Emg) -> Self {
-        Self { emg, gate: Gate::default(), config: Config::default().gate, pairs: 0, opened_mm: 0.0 }
+        Self {
+            emg,
+            gate: Gate::default(),
+            account: Account::default(),
+            config: Config::default().gate,
+            pairs: 0,
+            opened_mm: 0.0,
+        }
     }
 
     fn take(&mut self, uv: [Option<i32>; 2]) {
@@ -160,7 +169,9 @@ impl Hand {
         // 25 frames in three pairs.
         for _ in 0..if self.pairs.is_multiple_of(3) { 9 } else { 8 } {
             self.gate.tick(&self.config, false);
-            if let MotorDrive::Open(duty) = self.gate.wish(&self.config) {
+            let wish = self.gate.wish(&self.config, &self.account);
+            self.account.step(&self.gate, wish, true);
+            if let MotorDrive::Open(duty) = wish {
                 self.opened_mm += f64::from(duty.as_per_mille()) / 1_000.0 * 120.0 / 2_000.0;
             }
         }

@@ -3,49 +3,94 @@
 use std::path::Path;
 
 use anyhow::{Context, bail, ensure};
-use mcap::MessageStream;
 use mcap::read::Options;
+use mcap::{McapError, MessageStream};
 use tenax_hal_shim::wire::{BadFrame, VERSION};
 
-use super::Inbox;
+use super::{Heard, Inbox};
 use crate::protobuf;
+use crate::tool::out;
 
 pub const TOPIC: &str = "/line";
 
-/// The line's bytes in a recording or a captured line. Of a recording that was cut short, its whole chunks.
-/// Fails if the file cannot be read, or holds no message of a board.
+/// The bytes of a line in a file.
+pub struct Captured {
+    pub line: Vec<u8>,
+    /// Ends of the pieces in which they were recorded, and when each came, ns since 1970. None where only the bytes were kept.
+    came: Vec<(usize, u64)>,
+}
+
+/// The bytes of the line in a file: see [`Captured::open`].
 pub fn line_of(path: &Path) -> anyhow::Result<Vec<u8>> {
-    let name = path.display();
-    let bytes = std::fs::read(path).with_context(|| format!("cannot read {name}"))?;
-    let line = if is_recording(path) { recorded(path, &bytes)? } else { bytes };
-    let (mut inbox, mut other) = (Inbox::default(), None);
-    for frame in line.iter().filter_map(|&byte| inbox.push(byte)) {
-        match frame {
-            Ok(_) => return Ok(line),
-            Err(BadFrame::Version(version)) => other = Some(version),
-            Err(_) => {}
+    Ok(Captured::open(path)?.line)
+}
+
+impl Captured {
+    /// A recording or a captured line. Of a recording that was cut short, its whole chunks; says so.
+    /// Fails if the file cannot be read, or holds no message of a board.
+    pub fn open(path: &Path) -> anyhow::Result<Self> {
+        let name = path.display();
+        let bytes = std::fs::read(path).with_context(|| format!("cannot read {name}"))?;
+        let captured = match is_recording(path) {
+            true => recorded(path, &bytes)?,
+            false => Self { line: bytes, came: Vec::new() },
+        };
+        let mut other = None;
+        let is_line = captured.frames().any(|(_, _, frame)| {
+            if let Err(BadFrame::Version(version)) = frame {
+                other = Some(version);
+            }
+            frame.is_ok()
+        });
+        match other {
+            _ if is_line => Ok(captured),
+            Some(version) => bail!("{name} is of wire version {version}, and this tool reads {VERSION}"),
+            None => bail!(
+                "{name} is no board's line: none of its {} bytes belongs to a message. `tenax record` writes one",
+                captured.line.len()
+            ),
         }
     }
-    match other {
-        Some(version) => bail!("{name} is of wire version {version}, and this tool reads {VERSION}"),
-        None => bail!(
-            "{name} is no board's line: none of its {} bytes belongs to a message. `tenax record` writes one",
-            line.len()
-        ),
+
+    /// Every frame: its end (bytes), when it came (ns since 1970), and its message.
+    pub fn frames(&self) -> impl Iterator<Item = (usize, Option<u64>, Result<Heard, BadFrame>)> {
+        let (mut inbox, mut pieces) = (Inbox::default(), self.came.iter().peekable());
+        self.line.iter().enumerate().filter_map(move |(n, &byte)| {
+            let frame = inbox.push(byte)?;
+            while pieces.next_if(|(end, _)| *end <= n).is_some() {}
+            Some((n + 1, pieces.peek().map(|(_, came_ns)| *came_ns), frame))
+        })
     }
 }
 
-fn recorded(path: &Path, bytes: &[u8]) -> anyhow::Result<Vec<u8>> {
+fn recorded(path: &Path, bytes: &[u8]) -> anyhow::Result<Captured> {
     let name = path.display();
     ensure!(bytes.starts_with(mcap::MAGIC), "{name}: this is no MCAP file");
     let messages = MessageStream::new_with_options(bytes, Options::IgnoreEndMagic.into())?;
-    let (mut line, mut found) = (Vec::new(), false);
-    for message in messages.map_while(Result::ok).filter(|message| message.channel.topic == TOPIC) {
-        found = true;
-        line.extend(protobuf::first_bytes(&message.data).unwrap_or_default());
+    let (mut captured, mut is_whole) =
+        (Captured { line: Vec::new(), came: Vec::new() }, bytes.ends_with(mcap::MAGIC));
+    for message in messages {
+        match message {
+            Ok(message) if message.channel.topic == TOPIC => {
+                captured.line.extend(protobuf::first_bytes(&message.data).unwrap_or_default());
+                captured.came.push((captured.line.len(), message.publish_time));
+            }
+            Ok(_) => {}
+            Err(McapError::UnsupportedCompression(with)) => bail!(
+                "{name} is compressed with {with}, which this tool does not read: `mcap decompress {name} --output FILE.mcap` \
+                 makes one that it reads"
+            ),
+            Err(_) => {
+                is_whole = false;
+                break;
+            }
+        }
     }
-    ensure!(found, "{name} has no topic {TOPIC}: no board's line was recorded in it");
-    Ok(line)
+    ensure!(!captured.came.is_empty(), "{name} has no topic {TOPIC}: no board's line was recorded in it");
+    if !is_whole {
+        out::note!("{name}: its end is missing, as of a recorder that was killed; what is whole is read");
+    }
+    Ok(captured)
 }
 
 pub fn is_recording(path: &Path) -> bool {

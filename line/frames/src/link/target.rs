@@ -7,11 +7,14 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::time::Duration;
 
-use anyhow::{Context, bail};
+use anyhow::{Context, anyhow, bail};
 use tenax_hal_shim::wire::BAUD;
 
 use super::captured::line_of;
 
+/// Of a port that only root and the group of serial ports may open.
+const PERMISSION: &str = "you may not: `sudo usermod -aG dialout $USER` (on Arch: uucp) and a new login let you, or a udev rule \
+                          with MODE=\"0666\"";
 const READ_TIMEOUT: Duration = Duration::from_millis(100);
 const CONNECT_TIMEOUT: Duration = Duration::from_secs(3);
 
@@ -86,12 +89,15 @@ fn open_port(name: &str) -> anyhow::Result<Line> {
     let baud = if pseudo && cfg!(target_os = "macos") { 0 } else { BAUD };
     let port = serialport::new(name, baud).timeout(READ_TIMEOUT).exclusive(!pseudo);
     let both = port.open().and_then(|up| Ok((up.try_clone()?, up)));
-    let (down, up) = both.with_context(|| {
-        format!(
-            "cannot open {name}; ports on this machine: {}. A scene's line is where `tenax run --serve` says, or \
-             tcp:HOST:PORT",
-            port_names()
-        )
+    let (down, up) = both.map_err(|error| {
+        let what = match error.kind {
+            serialport::ErrorKind::Io(io::ErrorKind::PermissionDenied) => PERMISSION.to_owned(),
+            _ => format!(
+                "ports on this machine: {}. A scene's line is where `tenax run --serve` says, or tcp:HOST:PORT",
+                port_names()
+            ),
+        };
+        anyhow!(error).context(format!("cannot open {name}; {what}"))
     })?;
     Ok(Line { up: Box::new(up), down: Some(Box::new(down)) })
 }

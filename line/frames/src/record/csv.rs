@@ -1,28 +1,31 @@
-//! A recording as CSV, a file a topic: the same values as in MCAP, with the time in a column.
+//! A recording as CSV, a file a topic: the same values as in MCAP. Columns before them: time in the file, which goes on when the board
+//! starts again; time since the board's start; the recording computer's time since 1970, empty where only bytes were kept; all in s.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 
-use super::topics::rows;
-use crate::link::Inbox;
+use super::topics::timed;
+use crate::link::{Captured, Clock};
 use crate::protobuf::Value;
-use crate::words::seconds;
 
 /// Writes the values of a line's messages into `folder`; returns the files. Fails if one cannot be written.
-pub fn export(line: &[u8], folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
+pub fn export(captured: &Captured, folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
     std::fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
-    let (mut inbox, mut last, mut paths, mut files) = (Inbox::default(), 0, Vec::new(), BTreeMap::new());
-    for heard in line.iter().filter_map(|&byte| inbox.push(byte)).flatten() {
-        for row in rows(&heard.received.message, last) {
-            last = last.max(row.frame);
+    let (mut clock, mut paths, mut files) = (Clock::default(), Vec::new(), BTreeMap::new());
+    for (_, came_ns, frame) in captured.frames() {
+        let Ok(heard) = frame else { continue };
+        for row in timed(&mut clock, &heard.received.message, came_ns) {
+            let host_s = came_ns.map_or_else(String::new, |ns| format!("{:.4}", ns as f64 / 1e9));
+            let times = [
+                ("time_s", format!("{:.4}", clock.seconds(row.frame))),
+                ("board_s", format!("{:.4}", clock.board_seconds(row.frame))),
+                ("host_s", host_s),
+            ];
+            let times = times.map(|(name, text)| (name.to_owned(), text));
             let cells = row.fields.iter().flat_map(|(name, value)| cells(name, value));
-            let (names, cells): (Vec<String>, Vec<String>) =
-                [("time_s".to_owned(), format!("{:.4}", seconds(row.frame)))]
-                    .into_iter()
-                    .chain(cells)
-                    .unzip();
+            let (names, cells): (Vec<String>, Vec<String>) = times.into_iter().chain(cells).unzip();
             if !files.contains_key(&row.topic) {
                 let name = row.topic.trim_matches('/').replace('/', "-");
                 let path = folder.join(name).with_extension("csv");

@@ -9,9 +9,10 @@ use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::{Answer, Counters, Forces, Senses, Setting, Slow, TickRecord, Up};
 use tenax_logic::setting::SettingId;
 
+use crate::link::Clock;
 use crate::protobuf::Fields;
 use crate::protobuf::Value::{self, Flag, Number, Numbers, Text};
-use crate::words::{names, seconds, words};
+use crate::words::{line_words, names, seconds, words};
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
@@ -20,6 +21,15 @@ pub struct Row {
     /// The frame whose end is its time.
     pub frame: u32,
     pub fields: Fields,
+}
+
+/// The rows of a message that the clock hears, with that of a start which nobody heard. None before the first frame.
+pub fn timed(clock: &mut Clock, message: &Up, came_ns: Option<u64>) -> Vec<Row> {
+    let is_missed = clock.hear(message, came_ns);
+    let Some(last) = clock.last() else { return Vec::new() };
+    let start = "the board has started again: its first message was missed";
+    let start = is_missed.then(|| row("/event", "Event", last, [("text", Text(start.to_owned()))]));
+    start.into_iter().chain(rows(message, last)).collect()
 }
 
 /// The rows of a message. `last` is the newest frame, for messages that name none.
@@ -90,7 +100,7 @@ fn state(slow: &Slow) -> Row {
         ("flexor_mv", maybe(slow.flexor_mv)),
         ("extensor_mv", maybe(slow.extensor_mv)),
         ("wearer_active", Flag(slow.wearer_active)),
-        ("line", Text(format!("{:?}", slow.line))),
+        ("line", Text(line_words(slow.line))),
     ];
     row("/state", "State", slow.frame, fields)
 }

@@ -127,6 +127,9 @@ impl World {
         pulse: bool,
     ) -> Option<()> {
         let mut plant = self.plant.lock().unwrap_or_else(PoisonError::into_inner);
+        if plant.resets() {
+            return None;
+        }
         let mut wires = Wires::new(session.board_mut(), stop.at);
         if self.scanned < self.scans {
             let Some(drive) = wires.motor() else {
