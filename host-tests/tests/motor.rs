@@ -16,7 +16,7 @@ fn run_jammed(bench: &mut Bench, frames: u32) -> Vec<MotorDrive> {
             MotorDrive::Close(duty) | MotorDrive::Open(duty) => f64::from(duty.as_per_mille()) / 1e3,
             MotorDrive::Coast => 0.0,
         };
-        bench.pins_mv[MOTOR_CURRENT] = ZERO_MV + f64::from(MOTOR_MV_PER_A) * part * part;
+        bench.pins_mv[MOTOR_CURRENT] = ZERO_MV + f64::from(MOTOR_MV_PER_A) * part;
         drive
     };
     (0..frames).map(step).collect()

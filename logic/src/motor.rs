@@ -1,10 +1,10 @@
-//! Limits of the motor. A stopped motor is not driven, and the gear holds the object. The bridge's mirror shows duty times the winding's
-//! current (DRV8874, section 7.3.3): of a blocked motor, duty squared times the stall current.
+//! Limits of the motor. A stopped motor is not driven, and the gear holds the object. The bridge's mirror shows the winding's current,
+//! driven and short-circuited (DRV8874, section 7.3.3): of a blocked motor, duty times the stall current.
 //!
 //! | judged once a slow frame | from | stops |
 //! |---|---|---|
 //! | stall: half of a blocked motor's current or more, and the fingers stand still | current and opening, or the one that is left | the way it was driven |
-//! | heat: the current shown times the stall current | current, or else the duty | closing |
+//! | heat: the square of the current | current, or else the duty | closing |
 //!
 //! A stalled direction is driven again after 0.15 s without a request for it, after one for the other direction, or for a drive stronger by
 //! an eighth. Heat never stops an opening: a hand that cannot let go is worse than a hot motor.
@@ -144,10 +144,9 @@ impl Motor {
         let moved = self.moved(journal);
         self.warm(u32::from(config.limit_ma), stall_ma, ma, moved, duty);
 
-        // Current of a blocked motor's winding; the pin shows a part of it that is the duty.
         let blocked_ma = stall_ma * duty / 1_000;
         let draws = match ma {
-            Some(ma) => 2_000 * ma >= blocked_ma * duty,
+            Some(ma) => 2 * ma >= blocked_ma,
             None => moved.is_some(),
         };
         if self.stalled && duty > 0 {
@@ -239,7 +238,7 @@ impl Motor {
         let blocked_ma = stall_ma * duty / 1_000;
         let warms = match (ma, moved) {
             (Some(_), _) if self.idle >= IDLE_CYCLES => 0,
-            (Some(ma), _) => ma * stall_ma,
+            (Some(ma), _) => ma * ma,
             (None, Some(true)) => blocked_ma * blocked_ma / 4,
             (None, _) => blocked_ma * blocked_ma,
         };

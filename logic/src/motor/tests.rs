@@ -62,7 +62,7 @@ impl Bench {
         // 120 mm/s are 36 mV in a slow frame; who turns for ever turns to and fro.
         self.opening_mv =
             1_000.0 + (self.opening_mv - 1_000.0 + way * duty * turns * 36.0).rem_euclid(1_500.0);
-        let shown_mv = 300.0 + 2_400.0 * duty * duty * (1.0 - turns);
+        let shown_mv = 300.0 + 2_400.0 * duty * (1.0 - turns);
         for (channel, pin_mv, mv) in
             [(OPENING, self.opening_pin_mv, self.opening_mv), (MOTOR_CURRENT, self.current_pin_mv, shown_mv)]
         {

@@ -21,7 +21,7 @@ pub struct Gripper {
     /// Distance between the pads when nothing is compressed, mm.
     pub(crate) opening_mm: f64,
     pub(crate) speed_mm_s: f64,
-    /// Current that the bridge shows over the stall current at the whole supply: the motor's, times the duty (DRV8874, section 7.3.3).
+    /// Current over the stall current at the whole supply, as the bridge shows it, driven and short-circuited (DRV8874, section 7.3.3).
     pub(crate) current_part: f64,
     pub(crate) is_jammed: bool,
 }
@@ -53,7 +53,7 @@ impl Gripper {
         };
         let duty = part(duty);
         let speed = if self.is_jammed || is_at_end { 0.0 } else { self.motor.speed(duty, carried) };
-        self.current_part = duty * self.motor.current(duty, speed);
+        self.current_part = self.motor.current(duty, speed);
         let before_mm = self.opening_mm;
         let moved_mm = way * speed * self.parameters.speed_mm_s.get() * STEP_S;
         self.aim_mm = (self.aim_mm + moved_mm).clamp(0.0, range_mm);
@@ -201,12 +201,12 @@ mod tests {
             run(&mut gripper, MotorDrive::Open(Duty::FULL), 0.05);
             assert_eq!(gripper.current_part, 0.0, "the control: it moves");
             gripper.is_jammed = true;
-            blocked(&mut gripper, MotorDrive::Open(half), 0.25);
+            blocked(&mut gripper, MotorDrive::Open(half), 0.5);
             blocked(&mut gripper, MotorDrive::Close(Duty::FULL), 1.0);
             gripper.is_jammed = false;
             run(&mut gripper, MotorDrive::Open(Duty::FULL), 1.0);
             assert_eq!(gripper.opening_part(), 1.0);
-            blocked(&mut gripper, MotorDrive::Open(half), 0.25);
+            blocked(&mut gripper, MotorDrive::Open(half), 0.5);
         }
     }
 }
