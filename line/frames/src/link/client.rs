@@ -6,7 +6,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, bail};
-use tenax_hal_shim::wire::{Answer, BadFrame, Down, Refusal, Up};
+use tenax_hal_shim::wire::{Answer, BadFrame, Down, Refusal, Setting, Up};
 use tenax_logic::setting::SettingId;
 
 use super::{Counts, Heard, Inbox, Line, Outbox, Target};
@@ -27,7 +27,8 @@ pub struct Client {
     inbox: Inbox,
     heard: VecDeque<Result<Heard, BadFrame>>,
     /// Number of the command that is waited for, and its answer.
-    asked: Option<u16>,
+    /// Number of the command whose answer is awaited, and the setting that it names.
+    asked: Option<(u16, Option<u8>)>,
     answer: Option<Answer>,
     /// When the next command may be sent.
     free_at: Instant,
@@ -143,7 +144,12 @@ impl Client {
         // A board that is slower than real time skips more commands. Twice the same read or `Set` does no more than one.
         let repeats = command.reads() || matches!(command, Down::Set(_));
         for wait in repeats.then_some(within / 2).into_iter().chain([within]) {
-            self.asked = Some(self.send(command)?);
+            let named = match command {
+                Down::Get(id) => Some(*id),
+                Down::Set(setting) => Some(setting.id),
+                _ => None,
+            };
+            self.asked = Some((self.send(command)?, named));
             let began = Instant::now();
             while began.elapsed() < wait {
                 self.read().context("the line ended before the answer came")?;
@@ -166,7 +172,7 @@ impl Client {
         for frame in buffer[..length].iter().filter_map(|&byte| self.inbox.push(byte)) {
             if let Ok(heard) = &frame
                 && let Up::Answer { of, answer, .. } = &heard.received.message
-                && self.asked.take_if(|asked| *asked == *of).is_some()
+                && self.asked.take_if(|asked| answers(*asked, *of, answer)).is_some()
             {
                 self.answer = Some(answer.clone());
             }
@@ -178,4 +184,10 @@ impl Client {
 
 pub fn is_silence(error: &io::Error) -> bool {
     matches!(error.kind(), ErrorKind::TimedOut | ErrorKind::WouldBlock | ErrorKind::Interrupted)
+}
+
+/// Two clients' numbers may meet; then the setting tells their answers apart.
+fn answers((number, named): (u16, Option<u8>), of: u16, answer: &Answer) -> bool {
+    let fits = |setting: &Setting| named.is_none_or(|named| named == setting.id);
+    number == of && !matches!(answer, Answer::Setting(setting) if !fits(setting))
 }
