@@ -251,6 +251,16 @@ impl Bench {
         (0..frames).map(|_| self.step()).collect()
     }
 
+    /// Slips of 0.15 s, one after another: a tone that stands would be noise.
+    pub fn run_in_slips(&mut self, frames: u32) {
+        for _ in 0..frames / 500 {
+            self.vibration_mv = 800.0;
+            self.run(300);
+            self.vibration_mv = 0.0;
+            self.run(200);
+        }
+    }
+
     pub fn run_losing(&mut self, places: &[u8], frames: u32) -> Vec<MotorDrive> {
         let give = |_| {
             let frame = self.frame();

@@ -105,16 +105,6 @@ fn an_extensor_that_is_seated_again_during_a_contraction_opens_with_it_and_with_
     }
 }
 
-/// Slips of 0.15 s, one after another: a tone that stands would be noise.
-fn slips_for(bench: &mut Bench, frames: u32) {
-    for _ in 0..frames / 500 {
-        bench.vibration_mv = 800.0;
-        bench.run(300);
-        bench.vibration_mv = 0.0;
-        bench.run(200);
-    }
-}
-
 // Shows R3.
 #[test]
 fn an_electrode_that_twitches_renews_no_blind_budget_and_a_proven_contraction_does() {
@@ -123,12 +113,12 @@ fn an_electrode_that_twitches_renews_no_blind_budget_and_a_proven_contraction_do
         bench.pins_mv[FSR] = 0.0;
         bench.run(200);
         let budget = bench.fingertip.config().grip.blind_frames as usize;
-        slips_for(&mut bench, 20_000);
+        bench.run_in_slips(20_000);
         lifts(&mut bench, MYO_EXTENSOR, 5);
         let spent = bench.by_reflex();
         assert!((20..=budget + 1).contains(&spent), "{spent} frames, {budget} allowed");
         contract(&mut bench, MYO_EXTENSOR, 900.0);
-        slips_for(&mut bench, 20_000);
+        bench.run_in_slips(20_000);
         assert!(bench.by_reflex() > spent, "renewed");
     }
 }

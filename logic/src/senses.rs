@@ -165,7 +165,7 @@ impl Senses {
         }
     }
 
-    /// Drive of the last `frames`. `took_back`: the reflex released force. `striking`: the reflex is loud.
+    /// Drive of the last `frames`. `took_back`: the reflex released force.
     pub fn driven(&mut self, drive: MotorDrive, took_back: bool, mode: GripMode, frames: u32) {
         let striking = matches!(mode, GripMode::Slip | GripMode::Settle);
         let warned = mode == GripMode::Incipient;
