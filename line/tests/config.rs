@@ -7,7 +7,7 @@ use std::thread;
 use tenax_frames::link::Client;
 use tenax_logic::setting::SettingId;
 
-use crate::serving::{tenax, trusting};
+use crate::serving::{busy, tenax, trusting};
 
 #[test]
 fn every_setting_is_set_read_back_exported_imported_and_reset() {
@@ -52,6 +52,7 @@ fn every_setting_is_set_read_back_exported_imported_and_reset() {
 
 #[test]
 fn an_import_is_all_or_nothing_and_two_clients_get_their_own_answers() {
+    let _busy = busy();
     let served = trusting();
     let config = |args: &[&str]| tenax(&[&["config", "--port", &served.place], args].concat());
     let folder = tempfile::tempdir().unwrap();

@@ -15,6 +15,8 @@ use tenax_sim::board::Run;
 use tenax_sim::live::{Live, Person, Use};
 use tenax_sim::session::Board;
 
+use crate::serving::calm;
+
 const WITHIN: Duration = Duration::from_secs(5);
 
 /// A hand at rest, and for how long, s.
@@ -32,6 +34,7 @@ impl Plant for Rest {
 
 /// Serves a hand at rest on a pseudo-terminal and on TCP, while `visit` is told where.
 fn serve(options: Options, duration_s: f64, visit: impl FnOnce(&[Target]) + Send) -> (Run, Tally) {
+    let _calm = calm();
     let options = Options { pty: true, tcp: Some(0), ..options };
     let (mut server, down) = Server::start(&options).expect("this machine has ptys and free ports");
     let places: Vec<Target> = server.places().iter().map(|place| place.parse().unwrap()).collect();

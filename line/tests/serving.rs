@@ -1,8 +1,8 @@
 //! A scene on the host's board whose line is served, and the tool as a person starts it.
 
 use std::process::{Command, Output};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard};
 use std::thread::{self, JoinHandle};
 
 use tenax_frames::serve::{Options, Server, Tally};
@@ -23,6 +23,18 @@ pub fn tenax(args: &[&str]) -> (bool, String, String) {
     let Output { status, stdout, stderr } = command(args).output().unwrap();
     let [out, error] = [stdout, stderr].map(|bytes| String::from_utf8(bytes).unwrap());
     (status.success(), out, error)
+}
+
+static LOAD: RwLock<()> = RwLock::new(());
+
+/// Held by a test whose many clients keep the whole machine busy.
+pub fn busy() -> RwLockWriteGuard<'static, ()> {
+    LOAD.write().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Held by a test that a busy machine would fail: consent ends 10 s after a board's start.
+pub fn calm() -> RwLockReadGuard<'static, ()> {
+    LOAD.read().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// The rig's scene on a board that trusts its line, so that nobody at the hand has to consent.

@@ -13,7 +13,7 @@ use tenax_frames::link::{Client, Inbox};
 use tenax_hal_shim::channel::FRAME_HZ;
 use tenax_hal_shim::wire::Up;
 
-use crate::serving::{BENCH, Serving, command, tenax, trusting};
+use crate::serving::{BENCH, Serving, busy, command, tenax, trusting};
 
 fn record(place: &str, path: &Path, more: &[&str]) -> Child {
     let args = [&["record", "--port", place, "--out", path.to_str().unwrap()], more].concat();
@@ -44,6 +44,7 @@ fn last_frame(path: &Path) -> u32 {
 /// Twelve recorders are killed at drawn instants; another client of the line knows what the board had said by then.
 #[test]
 fn one_that_is_killed_loses_at_most_its_last_second() {
+    let _busy = busy();
     let (served, folder) = (trusting(), tempfile::tempdir().unwrap());
     let (newest, mut rng) = (AtomicU32::default(), ChaCha8Rng::seed_from_u64(7));
     let mut witness = Client::open(&served.place.parse().unwrap()).unwrap();
