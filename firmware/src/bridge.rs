@@ -10,6 +10,7 @@ use embassy_stm32::pac;
 use embassy_stm32::pac::gpio::vals::{Moder, Ospeedr};
 use embassy_stm32::pac::timer::vals::{Bkp, Ocm, Ossi};
 use embassy_stm32::peripherals::{PA8, PA11, TIM1};
+use embassy_stm32::rcc;
 use tenax_hal_shim::motor::{Duty, MotorBridge, MotorDrive};
 
 use crate::clock::CORE_HZ;
@@ -34,6 +35,7 @@ pub struct Bridge {
 
 impl Bridge {
     pub fn new(_timer: Peri<'static, TIM1>, _close: Peri<'static, PA8>, _open: Peri<'static, PA11>) -> Self {
+        rcc::enable_and_reset::<TIM1>();
         let timer = pac::TIM1;
         timer.arr().write(|w| w.set_arr(PERIOD - 1));
         for side in [CLOSE, OPEN] {

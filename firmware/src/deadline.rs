@@ -8,6 +8,7 @@ use core::task::Poll;
 use embassy_stm32::interrupt::typelevel::{self, Handler, Interrupt};
 use embassy_stm32::pac;
 use embassy_stm32::peripherals::TIM2;
+use embassy_stm32::rcc;
 use embassy_stm32::{Peri, interrupt::Priority};
 use embassy_sync::waitqueue::AtomicWaker;
 
@@ -49,6 +50,7 @@ pub struct Deadline {
 
 impl Deadline {
     pub fn new(timer: Peri<'static, TIM2>) -> Self {
+        rcc::enable_and_reset::<TIM2>();
         pac::TIM2.arr().write_value(u32::MAX);
         pac::TIM2.psc().write_value((CORE_HZ / 1_000_000 - 1) as u16);
         // The update takes the prescaler up.

@@ -26,7 +26,6 @@ mod deadline;
 mod flash;
 mod halves;
 mod last_words;
-mod line;
 mod mail;
 mod scan;
 mod serial;
@@ -39,10 +38,11 @@ use core::ptr::addr_of;
 use cortex_m::peripheral::SCB;
 use defmt_rtt as _;
 use embassy_executor::{InterruptExecutor, SpawnError, SpawnToken, Spawner};
+use embassy_stm32::flash::Flash;
 use embassy_stm32::interrupt::{InterruptExt, Priority};
 use embassy_stm32::peripherals::IWDG;
 use embassy_stm32::wdg::IndependentWatchdog;
-use embassy_stm32::{Peripherals, bind_interrupts, interrupt};
+use embassy_stm32::{bind_interrupts, interrupt};
 use static_cell::{ConstStaticCell, StaticCell};
 use tenax_hal_shim::channel::FRAME_HZ;
 use tenax_hal_shim::motor::MotorBridge;
@@ -89,12 +89,11 @@ fn made(new: impl FnOnce() -> control::Control) -> &'static mut control::Control
 
 #[embassy_executor::main]
 async fn main(spawner: Spawner) {
-    // SAFETY: nobody else takes them, and embassy's own start, which would, is not used: it has ways to panic.
-    let p = unsafe { Peripherals::steal() };
-    let mut watchdog = IndependentWatchdog::new(p.IWDG, START_US);
+    // SAFETY: taken once more below, when this one is given up.
+    let mut watchdog = IndependentWatchdog::new(unsafe { IWDG::steal() }, START_US);
     watchdog.unleash();
-    clock::enable();
-    // Before the clocks are waited for: until then the pins float.
+    let mut p = embassy_stm32::init(clock::slow());
+    // Before anything is waited for: until then the pins float.
     bridge::hold_low();
     last_words::guard_stack();
     let supplied = supply::has_risen();
@@ -105,15 +104,15 @@ async fn main(spawner: Spawner) {
         black_box::why(b"brown-out");
     }
     black_box::start(after, switched_on);
-    let crystal = clock::has_crystal(switched_on || browned_out);
-    let crystal = clock::start(crystal);
+    // Where the brown-out reset does not hold the chip below 2.83 V, the supply may be too low for 100 MHz.
+    while !supply::has_brown_out_reset() && !supply::has_risen() {
+        watchdog.pet();
+    }
+    let crystal = clock::start(switched_on || browned_out, &mut p.RCC);
     // Before anything that could take time: from here on both sides are held low.
     let bridge = Bridge::new(p.TIM1, p.PA8, p.PA11);
     let deadline = Deadline::new(p.TIM2);
-    if crystal {
-        clock::watch_crystal();
-    }
-    let (up, down) = line::open(p.USART2, (p.DMA1_CH5, p.DMA1_CH6), (p.PA2, p.PA3));
+    let (up, down) = serial::open(p.USART2, (p.PA3, p.PA2), (p.DMA1_CH5, p.DMA1_CH6));
     // The first of all messages: a hello that comes after others would look like a second start.
     let after = if supplied { after } else { after.or(Some(Fault::SupplySagged)) };
     mail::post(Up::Hello { frame_hz: FRAME_HZ as u16, after });
@@ -126,10 +125,9 @@ async fn main(spawner: Spawner) {
     supply::watch();
     // While nothing moves yet: switched on, this may erase a sector, and then the core stands still for a second or two. After
     // a reset something may be held, and the wearer must be able to let go of it.
-    let mut flash = flash::Flash::new(p.FLASH);
+    let mut flash = flash::Flash(Flash::new_blocking(p.FLASH));
     let erase = if switched_on { Erase::Allowed } else { Erase::Postponed };
     let (log, found) = tenax_logic::store::open(&mut flash, erase);
-    clock::accelerate_flash();
     interrupt::DMA2_STREAM0.set_priority(Priority::P1);
     // SAFETY: its handler is bound above, and its stream is not running yet.
     unsafe { interrupt::DMA2_STREAM0.enable() };
@@ -139,8 +137,7 @@ async fn main(spawner: Spawner) {
     let switches = Switches::new([p.PB12.into(), p.PB13.into(), p.PB14.into(), p.PB15.into()]);
     let button = Button::new(p.PC13, p.PC6, p.PC8);
     let vibrator = Vibrator::new(p.TIM4, p.PB6);
-    // SAFETY: the one that had longer to wait is given up.
-    let watchdog = IndependentWatchdog::new(unsafe { IWDG::steal() }, CONTROL_US);
+    let watchdog = IndependentWatchdog::new(p.IWDG, CONTROL_US);
     if stay_off {
         // No control, for it may be what failed: the button opens.
         wait_for_button(&deadline, bridge, &button, watchdog).await

@@ -1,8 +1,8 @@
 //! The 14-channel scan: TIM3 starts it in hardware 8000 times a second, DMA carries it, one interrupt a frame.
 //!
-//! embassy's own ring-buffered converter cannot do this: it writes every rank into SQR3, which holds six; it never looks
-//! at OVR, after which the converter is silent for ever; and it starts one scan by software ahead of the first timed one.
-//! So the sequence is written here, through the PAC, and so is its DMA ([`halves`](crate::halves)).
+//! embassy's own ring-buffered converter (embassy-stm32 0.6.0) cannot do this: it writes every rank into SQR3, which holds six (mended
+//! upstream after 0.6.0: embassy-rs/embassy#5791); it never looks at OVR, after which the converter is silent for ever; and it starts one
+//! scan by software ahead of the first timed one. So the sequence is written here, through the PAC, and so is its DMA ([`halves`](crate::halves)).
 //!
 //! The scan's timer and the deadline's count the same clock, so the two never drift apart and the instant of every frame is known without
 //! asking the converter: a frame that does not come in time is lost, and after a restart the sequence numbers go on where time has got to.
@@ -14,6 +14,7 @@ use embassy_stm32::pac::adccommon::vals::Adcpre;
 use embassy_stm32::pac::timer::vals::Mms;
 use embassy_stm32::pac::{self, ADC1_COMMON};
 use embassy_stm32::peripherals::{ADC1, DMA2_CH0, TIM3};
+use embassy_stm32::rcc;
 use tenax_hal_shim::channel::{FRAME_HZ, SCAN, SCAN_HZ, SCAN_LEN};
 use tenax_hal_shim::frame::Frame;
 
@@ -62,6 +63,8 @@ impl Scan {
         deadline: Deadline,
         _pins: impl Sized,
     ) -> Self {
+        rcc::enable_and_reset::<TIM3>();
+        rcc::enable_and_reset::<ADC1>();
         for (port, analog) in [pac::GPIOA, pac::GPIOB, pac::GPIOC].into_iter().zip(ANALOG) {
             port.moder().modify(|w| w.0 |= analog);
         }

@@ -63,6 +63,18 @@ fn a_wrong_brown_out_level_is_told_and_left_to_the_probe() {
 
 // Shows B2.
 #[test]
+fn without_a_brown_out_level_a_low_supply_is_waited_for_at_16_mhz() {
+    let run = |mishaps| {
+        let options = Options { brown_out_level: 3, supply_mv: 2_900, mishaps, ..Options::default() };
+        run(Swing::new(1.5).at_rest(), &options)
+    };
+    let low = run(Vec::new());
+    assert_eq!((low.starts.len(), low.line.len()), (0, 0), "its line needs a faster clock");
+    assert_eq!(run(vec![(0.5, Mishap::SupplyIs(3_300))]).starts, [Some(Fault::SupplySagged)]);
+}
+
+// Shows B2.
+#[test]
 fn a_hand_whose_supply_sags_slowly_at_each_closing_stays_off_in_the_end() {
     let sags = (0..6).map(|n| 0.2 + 0.7 * f64::from(n));
     let mishaps =
