@@ -143,9 +143,14 @@ pub fn read(answer: &mut Up) {
     // It has room for both.
     let _fits = last.bytes.extend_from_slice(one);
     let _fits = last.bytes.extend_from_slice(two);
-    let length = (header(WHY_LENGTH) as usize).min(WHY_MAX);
+    let _fits = last.why.extend_from_slice(reason());
+}
+
+/// Why the run before the box was closed ended; nothing in an open one.
+pub fn reason() -> &'static [u8] {
+    let length = if header(FAULT) == 0 { 0 } else { (header(WHY_LENGTH) as usize).min(WHY_MAX) };
     // SAFETY: so many were written; nobody writes any more.
-    let _fits = last.why.extend_from_slice(unsafe { from_raw_parts(addr_of!(WHY).cast::<u8>(), length) });
+    unsafe { from_raw_parts(addr_of!(WHY).cast::<u8>(), length) }
 }
 
 fn empty() {

@@ -61,17 +61,15 @@ pub fn give_up(mark: Mark, why: &str) -> ! {
     SCB::sys_reset()
 }
 
-/// Switches the bridge off, leaves the mark and the reason, with all interrupts off from now on. True: there is a mark already.
-pub fn leave(mark: Mark, why: &str) -> bool {
+/// Switches the bridge off, leaves the mark and the reason, with all interrupts off from now on.
+pub fn leave(mark: Mark, why: &str) {
     cortex_m::interrupt::disable();
     bridge::off();
     board::vibrator_off();
-    let is_left = kept(MARK) != 0;
     if let Some((_, word)) = MARKS.iter().find(|(own, _)| *own == mark) {
         keep(MARK, *word);
     }
     black_box::why(why.as_bytes());
-    is_left
 }
 
 /// A fault of the core: as a panic. Its reason is PC, LR, CFSR, HFSR and BFAR (ARM DDI 0403E, section B3.2).

@@ -26,6 +26,7 @@ mod deadline;
 mod flash;
 mod halves;
 mod last_words;
+mod log;
 mod mail;
 mod scan;
 mod serial;
@@ -36,7 +37,6 @@ use core::panic::PanicInfo;
 use core::ptr::addr_of;
 
 use cortex_m::peripheral::SCB;
-use defmt_rtt as _;
 use embassy_executor::{InterruptExecutor, SpawnError, SpawnToken, Spawner};
 use embassy_stm32::flash::Flash;
 use embassy_stm32::interrupt::{InterruptExt, Priority};
@@ -132,7 +132,6 @@ async fn main(spawner: Spawner) {
     // SAFETY: its handler is bound above, and its stream is not running yet.
     unsafe { interrupt::DMA2_STREAM0.enable() };
     interrupt::I2C3_ER.set_priority(Priority::P2);
-    defmt::info!("tenax: started, after {}", after.is_some());
 
     let switches = Switches::new([p.PB12.into(), p.PB13.into(), p.PB14.into(), p.PB15.into()]);
     let button = Button::new(p.PC13, p.PC6, p.PC8);
@@ -209,9 +208,10 @@ fn once<S>(task: Result<SpawnToken<S>, SpawnError>) -> SpawnToken<S> {
     task.expect("each task is started once")
 }
 
+/// Its message is left out: core's formatting would take 6 kB of flash.
 #[panic_handler]
 fn on_panic(info: &PanicInfo) -> ! {
-    let in_here = last_words::leave(Mark::Panicked, "");
+    last_words::leave(Mark::Panicked, "");
     if let Some(place) = info.location() {
         // The end of a path says most.
         let path = place.file().as_bytes();
@@ -219,9 +219,6 @@ fn on_panic(info: &PanicInfo) -> ! {
         black_box::why(path.get(from..).unwrap_or(path));
         black_box::why(b":");
         black_box::why_decimal(place.line());
-    }
-    if !in_here {
-        defmt::error!("{}", defmt::Display2Format(info));
     }
     SCB::sys_reset()
 }

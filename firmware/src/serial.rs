@@ -14,7 +14,7 @@ use tenax_hal_shim::wire::{BAUD, BadFrame, Down, FRAME_MAX, Received, Receiver, 
 use tenax_logic::allowance::Allowance;
 
 use crate::deadline::clock_us;
-use crate::{black_box, counts, mail};
+use crate::{black_box, counts, log, mail};
 
 bind_interrupts!(struct Irqs {
     USART2 => usart::InterruptHandler<USART2>;
@@ -91,6 +91,7 @@ pub async fn telemetry(mut line: UpLine) -> ! {
         match encode(posted.sequence, &posted.message, &mut buffer) {
             Some(frame) => {
                 black_box::write(&posted.message, frame);
+                log::told(&posted.message);
                 let _never_fails = line.write(frame).await;
             }
             None => counts::TELEMETRY_DROPPED.add_one(),
