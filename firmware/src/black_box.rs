@@ -1,6 +1,7 @@
 //! The last seconds of telemetry, in RAM that a reset does not clear: after a fault they stay until a client has read them.
 //! Only telemetry writes it. A frame that a reset cuts short has a wrong CRC; the count of bytes is raised after they are written. A power
 //! cut leaves nothing.
+//! Runs in telemetry (thread), in control (2) where a command reads it, and in whoever fails. Owns its RAM. Never formats, never waits.
 
 use core::mem::MaybeUninit;
 use core::num::NonZeroU32;

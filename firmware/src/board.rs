@@ -1,4 +1,5 @@
 //! The small parts of the board that control drives: button and light, select lines, vibration motor.
+//! Runs in control (2). Owns GPIOB 12 to 15, PC6, PC8, PC13, TIM4 with PB6. Never panics, never waits.
 
 use embassy_stm32::Peri;
 use embassy_stm32::gpio::{AnyPin, Input, Level, Output, OutputType, Pull, Speed};
@@ -9,7 +10,7 @@ use embassy_stm32::timer::low_level::CountingMode;
 use embassy_stm32::timer::simple_pwm::{PwmPin, PwmPinConfig, SimplePwm, SimplePwmChannel};
 use tenax_hal_shim::motor::Duty;
 
-use crate::clock::CORE_HZ;
+use crate::timing::{PWM_HZ, TICKS_PER_MILLE};
 
 /// The blue button of the NUCLEO (B1, UM1724 section 6.5), which pulls its pin low, and an LED with its resistor from its pin to ground. The NUCLEO's own LED is on a
 /// film's pin. Beside them the bridge's nFAULT, which is open drain and pulled low (DRV8874, section 7.3.4): not wired, it is high.
@@ -77,10 +78,6 @@ impl Switches {
     }
 }
 
-/// Above hearing.
-const VIBRATOR_HZ: u32 = 20_000;
-const TICKS_PER_MILLE: u16 = (CORE_HZ / VIBRATOR_HZ) as u16 / Duty::FULL.as_per_mille();
-
 /// The vibration motor of the feedback to the wearer: TIM4 channel 1 through a transistor. A reset leaves its pin floating, and the transistor's resistor switches it off.
 pub struct Vibrator {
     _channel: SimplePwmChannel<'static, peripherals::TIM4>,
@@ -90,8 +87,7 @@ impl Vibrator {
     pub fn new(timer: Peri<'static, peripherals::TIM4>, pin: Peri<'static, PB6>) -> Self {
         let slow = PwmPinConfig { output_type: OutputType::PushPull, speed: Speed::Low, pull: Pull::None };
         let pin = Some(PwmPin::new_with_config(pin, slow));
-        let pwm =
-            SimplePwm::new(timer, pin, None, None, None, Hertz(VIBRATOR_HZ), CountingMode::EdgeAlignedUp);
+        let pwm = SimplePwm::new(timer, pin, None, None, None, Hertz(PWM_HZ), CountingMode::EdgeAlignedUp);
         let mut channel = pwm.split().ch1;
         channel.enable();
         Self { _channel: channel }

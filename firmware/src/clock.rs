@@ -1,6 +1,7 @@
 //! The clock tree: 100 MHz from the ST-LINK's 8 MHz, set by embassy, whose code waits without end for a crystal or a PLL that never comes
 //! (embassy-stm32 0.6.0, `rcc/f247.rs`). So both are tried here first, each wait with an end; what is ready then is ready for embassy,
 //! and the watchdog, which runs before, ends what is not.
+//! Runs at the start, before any interrupt is on. Owns RCC. Never waits without an end.
 
 use cortex_m::asm::delay;
 use embassy_stm32::Peri;
@@ -11,20 +12,18 @@ use embassy_stm32::rcc::{
     Sysclk,
 };
 use embassy_stm32::time::Hertz;
-use embassy_stm32::{Config, interrupt::Priority, peripherals};
+use embassy_stm32::{Config, peripherals};
 use tenax_logic::restart::Mark;
 
 use crate::last_words::give_up;
+use crate::timing::{CRYSTAL_LOOKS, LOOK_CYCLES, LOOKS};
 
-/// Clock of AHB and all timers, Hz (RM0383, figure 12): a scan period is a whole number of its ticks and of microseconds.
-pub const CORE_HZ: u32 = 100_000_000;
 const CRYSTAL: Hse = Hse { freq: Hertz(8_000_000), mode: HseMode::Bypass };
 
 /// The first configuration, of a chip that was reset: it runs on at 16 MHz, which any supply carries and nothing is waited for.
 pub fn slow() -> Config {
     let mut config = Config::default();
     config.rcc.ls = LsConfig::off();
-    config.dma_interrupt_priority = Priority::P6;
     config
 }
 
@@ -43,20 +42,12 @@ fn fast(on_crystal: bool) -> rcc::Config {
     config
 }
 
-/// One look at the crystal, 0.1 ms at 16 MHz.
-pub const LOOK_CYCLES: u32 = 1_600;
-pub const LOOKS_PER_S: u32 = 10_000;
-/// A crystal takes 2 ms (DS10314, HSE oscillator characteristics), the ST-LINK's clock goes on through a reset: 20 ms. Where the supply
-/// has been off, the ST-LINK starts as well: 0.3 s.
-const LOOKS: u32 = 200;
-const LOOKS_SUPPLIED: u32 = 3_000;
-
 fn has_crystal(was_off: bool) -> bool {
     RCC.cr().modify(|w| {
         w.set_hsebyp(true);
         w.set_hseon(true);
     });
-    comes_within(if was_off { LOOKS_SUPPLIED } else { LOOKS }, || RCC.cr().read().hserdy())
+    comes_within(if was_off { CRYSTAL_LOOKS } else { LOOKS }, || RCC.cr().read().hserdy())
 }
 
 fn comes_within(looks: u32, is_there: impl Fn() -> bool) -> bool {

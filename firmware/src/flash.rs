@@ -1,6 +1,7 @@
 //! The chip's last two flash sectors, 6 and 7, as the log's flash, through embassy's driver. `memory.x` keeps the image out of them.
 //! The core stands still while a word is programmed (16 us, at most 100) and while a sector is erased, by bytes (2 s, at most 4; DS10314,
 //! flash memory programming); interrupts wait, DMA and timers go on.
+//! Runs at the start and in the store (thread). Owns the flash interface, but not the option bytes. Never runs while the supply is low.
 
 use core::ptr::addr_of;
 

@@ -1,6 +1,7 @@
 //! The image's log, defmt over RTT, for a probe: a line for each start, mode, fault and refused command, by the levels of `DEFMT_LOG`.
 //! Telemetry writes it, beside the message that it sends, and control does not: a line holds interrupts off for up to 900 instructions, a
 //! restart's for 1,800. Without the feature `log` the image is 3 kB smaller.
+//! Owns RTT.
 
 use tenax_hal_shim::wire::Up;
 

@@ -1,15 +1,6 @@
 //! The image of the fingertip's microcontroller (STM32F411RE).
-//! Tasks move data; what it means is decided in `tenax-logic`. Who runs where, the most urgent first:
-//!
-//! | who | runs in | priority | worst if it were wrong |
-//! |---|---|---|---|
-//! | `bridge::off` in a panic or fault | the faulting context | all interrupts off | the motor stays driven |
-//! | scan's DMA, its deadline | their interrupts | 1 | a deadline is noticed late: a lost frame stays unnoticed |
-//! | [`control`]: frame, logic, bridge, watchdog | executor in interrupt I2C3_ER | 2 | switches step late, ticks run late |
-//! | the serial line's interrupts | USART2, DMA1 | 6 | below control or control jitters by them |
-//! | [`serial`]: telemetry, commands | thread executor | none | messages are dropped and counted, control goes on |
-//! | [`store`]: a word of flash after every fourth tick | thread executor | none | the core stalls in a tick |
-//! | idle | thread executor | none | sleeps in WFE until an interrupt |
+//! Tasks move data; what it means is decided in `tenax-logic`. [`interrupts`] has every priority, [`timing`] every time; each file's head
+//! says where it runs and at which priority, what it owns and what it never does.
 //!
 //! Control never waits for the others: what it hands over goes into a bounded box ([`mail`]) or is dropped. If it stops,
 //! the watchdog, which only it feeds, resets the chip after 0.1 s and the bridge is off from that instant. Before its first tick it is 8 s.
@@ -25,6 +16,7 @@ mod counts;
 mod deadline;
 mod flash;
 mod halves;
+mod interrupts;
 mod last_words;
 mod log;
 mod mail;
@@ -32,6 +24,7 @@ mod scan;
 mod serial;
 mod store;
 mod supply;
+mod timing;
 
 use core::panic::PanicInfo;
 use core::ptr::addr_of;
@@ -39,7 +32,7 @@ use core::ptr::addr_of;
 use cortex_m::peripheral::SCB;
 use embassy_executor::{InterruptExecutor, SpawnError, SpawnToken, Spawner};
 use embassy_stm32::flash::Flash;
-use embassy_stm32::interrupt::{InterruptExt, Priority};
+use embassy_stm32::interrupt::InterruptExt;
 use embassy_stm32::peripherals::IWDG;
 use embassy_stm32::wdg::IndependentWatchdog;
 use embassy_stm32::{bind_interrupts, interrupt};
@@ -55,6 +48,7 @@ use tenax_logic::store::Erase;
 use crate::board::{Button, Switches, Vibrator};
 use crate::bridge::Bridge;
 use crate::deadline::Deadline;
+use crate::timing::{CONTROL_US, START_US, SUPPLY_LOOK_US};
 
 bind_interrupts!(struct Irqs {
     DMA2_STREAM0 => halves::OnHalf;
@@ -62,19 +56,13 @@ bind_interrupts!(struct Irqs {
 });
 
 /// Runs control, above the thread executor. I2C3 itself is not used.
-static URGENT: InterruptExecutor = InterruptExecutor::new();
+static CONTROL_EXECUTOR: InterruptExecutor = InterruptExecutor::new();
 
 #[interrupt]
 unsafe fn I2C3_ER() {
     // SAFETY: this is that interrupt, and it is enabled by `start` only.
-    unsafe { URGENT.on_interrupt() }
+    unsafe { CONTROL_EXECUTOR.on_interrupt() }
 }
-
-/// Periods of the watchdog, us: for a start, which may erase a sector (2 s), and while control runs, which feeds it 200 times in one.
-const START_US: u32 = 8_000_000;
-const CONTROL_US: u32 = 100_000;
-/// From one look at a supply that is low to the next.
-const SUPPLY_LOOK_US: u32 = 10_000;
 
 static SCAN_RING: ConstStaticCell<[u32; halves::RING_LEN]> = ConstStaticCell::new([0; halves::RING_LEN]);
 
@@ -93,6 +81,7 @@ async fn main(spawner: Spawner) {
     let mut watchdog = IndependentWatchdog::new(unsafe { IWDG::steal() }, START_US);
     watchdog.unleash();
     let mut p = embassy_stm32::init(clock::slow());
+    interrupts::set_priorities();
     // Before anything is waited for: until then the pins float.
     bridge::hold_low();
     last_words::guard_stack();
@@ -125,13 +114,12 @@ async fn main(spawner: Spawner) {
     supply::watch();
     // While nothing moves yet: switched on, this may erase a sector, and then the core stands still for a second or two. After
     // a reset something may be held, and the wearer must be able to let go of it.
+    watchdog.pet();
     let mut flash = flash::Flash(Flash::new_blocking(p.FLASH));
     let erase = if switched_on { Erase::Allowed } else { Erase::Postponed };
     let (log, found) = tenax_logic::store::open(&mut flash, erase);
-    interrupt::DMA2_STREAM0.set_priority(Priority::P1);
     // SAFETY: its handler is bound above, and its stream is not running yet.
     unsafe { interrupt::DMA2_STREAM0.enable() };
-    interrupt::I2C3_ER.set_priority(Priority::P2);
 
     let switches = Switches::new([p.PB12.into(), p.PB13.into(), p.PB14.into(), p.PB15.into()]);
     let button = Button::new(p.PC13, p.PC6, p.PC8);
@@ -163,7 +151,7 @@ async fn main(spawner: Spawner) {
         store::restored(&flash, &found, mail::post);
     }
     spawner.spawn(once(store::store(flash, log)));
-    let urgent = URGENT.start(interrupt::I2C3_ER);
+    let urgent = CONTROL_EXECUTOR.start(interrupt::I2C3_ER);
     urgent.spawn(once(control::control(scan, control)));
 }
 

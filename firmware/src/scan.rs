@@ -6,6 +6,7 @@
 //!
 //! The scan's timer and the deadline's count the same clock, so the two never drift apart and the instant of every frame is known without
 //! asking the converter: a frame that does not come in time is lost, and after a restart the sequence numbers go on where time has got to.
+//! Runs in control (2). Owns ADC1, TIM3 and the analogue pins. Never waits without a deadline.
 
 use embassy_stm32::Peri;
 use embassy_stm32::pac::adc::regs::{Smpr1, Smpr2, Sqr1, Sqr2, Sqr3};
@@ -15,22 +16,18 @@ use embassy_stm32::pac::timer::vals::Mms;
 use embassy_stm32::pac::{self, ADC1_COMMON};
 use embassy_stm32::peripherals::{ADC1, DMA2_CH0, TIM3};
 use embassy_stm32::rcc;
-use tenax_hal_shim::channel::{FRAME_HZ, SCAN, SCAN_HZ, SCAN_LEN};
+use tenax_hal_shim::channel::{SCAN, SCAN_HZ, SCAN_LEN};
 use tenax_hal_shim::frame::Frame;
 
-use crate::clock::CORE_HZ;
 use crate::counts;
 use crate::deadline::{Deadline, Micros};
 use crate::halves::{Halves, RING_LEN};
+use crate::timing::{CORE_HZ, FRAME_US, PATIENCE_US, SCAN_US};
 
-const SCAN_US: u32 = 1_000_000 / SCAN_HZ;
-const FRAME_US: u32 = 1_000_000 / FRAME_HZ;
 /// EXTSEL of the regular group: TIM3's TRGO (RM0383, section 11.12.3).
 const EXTSEL_TIM3_TRGO: u8 = 0b1000;
 /// 56 + 12 cycles at 25 MHz: a scan takes 38 us of its 125, and sources of up to 20 kohm settle (DS10314, equation 1).
 const SAMPLE_TIME: SampleTime = SampleTime::CYCLES56;
-/// A frame that is this late is not waited for any more, us: the switches have begun to show the following one.
-const PATIENCE_US: u32 = SCAN_US;
 
 pub struct Scan {
     _adc: Peri<'static, ADC1>,

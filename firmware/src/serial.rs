@@ -1,10 +1,10 @@
 //! The serial line of the ST-LINK, USART2 through embassy's driver: messages go up as fast as it takes them, commands come down to control.
+//! Runs in thread; its handlers are embassy's (6). Owns USART2, PA2, PA3, DMA1's streams 5 and 6. May panic, which resets; never moves the motor.
 
 use core::mem::MaybeUninit;
 
 use embassy_futures::poll_once;
 use embassy_stm32::gpio::Pull;
-use embassy_stm32::interrupt::{self, InterruptExt, Priority};
 use embassy_stm32::mode::Async;
 use embassy_stm32::peripherals::{DMA1_CH5, DMA1_CH6, PA2, PA3, USART2};
 use embassy_stm32::usart::{Config, RingBufferedUartRx, Uart, UartTx};
@@ -14,6 +14,7 @@ use tenax_hal_shim::wire::{BAUD, BadFrame, Down, FRAME_MAX, Received, Receiver, 
 use tenax_logic::allowance::Allowance;
 
 use crate::deadline::clock_us;
+use crate::timing::RING_LEN;
 use crate::{black_box, counts, log, mail};
 
 bind_interrupts!(struct Irqs {
@@ -22,8 +23,7 @@ bind_interrupts!(struct Irqs {
     DMA1_STREAM6 => dma::InterruptHandler<DMA1_CH6>;
 });
 
-/// Bytes that DMA writes around in: 8 ms of a full line, and who reads them needs far less to get its turn.
-static RING: ConstStaticCell<[u8; 768]> = ConstStaticCell::new([0; 768]);
+static RING: ConstStaticCell<[u8; RING_LEN]> = ConstStaticCell::new([0; RING_LEN]);
 
 pub type UpLine = UartTx<'static, Async>;
 pub type DownLine = RingBufferedUartRx<'static>;
@@ -37,7 +37,6 @@ pub fn open(
     config.baudrate = BAUD;
     // Nobody may be at the other end.
     config.rx_pull = Pull::Up;
-    interrupt::USART2.set_priority(Priority::P6);
     let port = Uart::new(port, rx, tx, tx_dma, rx_dma, Irqs, config).expect("a rate that APB1 reaches");
     let (up, down) = port.split();
     (up, down.into_ring_buffered(RING.take()))

@@ -33,6 +33,8 @@ mod mail;
 mod scan;
 #[path = "../supply.rs"]
 mod supply;
+#[path = "../timing.rs"]
+mod timing;
 
 use core::hint::black_box;
 
@@ -46,12 +48,12 @@ bind_interrupts!(struct Irqs {
     TIM2 => deadline::OnDeadline;
 });
 
-static URGENT: InterruptExecutor = InterruptExecutor::new();
+static CONTROL_EXECUTOR: InterruptExecutor = InterruptExecutor::new();
 
 #[interrupt]
 unsafe fn I2C3_ER() {
     // SAFETY: this is that interrupt.
-    unsafe { black_box(&URGENT).on_interrupt() }
+    unsafe { black_box(&CONTROL_EXECUTOR).on_interrupt() }
 }
 
 /// Control's task as the executor gets it. It is not spawned: that may panic, and is no part of control.
