@@ -17,9 +17,7 @@ const NOT_FOR_THE_IMAGE: [&str; 5] = [
 ];
 
 /// Builds the image of the workspace at `root`; its ELF file. `TENAX_CHIP`, such as `f412`, builds it for another chip, apart.
-///
-/// # Errors
-/// The compiler failed; its messages are on standard error.
+/// Fails if the compiler does; its messages are on standard error.
 pub fn build(root: &Path) -> Result<PathBuf> {
     let mut cargo = Command::new("cargo");
     NOT_FOR_THE_IMAGE.iter().for_each(|name| _ = cargo.env_remove(name));
