@@ -23,7 +23,7 @@ const PRIORITIES: [(Interrupt, Priority); 7] = [
     (interrupt::DMA1_STREAM6, LINE),
 ];
 
-/// After embassy's `init`, which gives every DMA stream one.
+/// After embassy's `init`, which switches those of DMA on and gives them one.
 pub fn set_priorities() {
     for (interrupt, priority) in PRIORITIES {
         interrupt.set_priority(priority);

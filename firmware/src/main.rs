@@ -32,7 +32,6 @@ use core::ptr::addr_of;
 use cortex_m::peripheral::SCB;
 use embassy_executor::{InterruptExecutor, SpawnError, SpawnToken, Spawner};
 use embassy_stm32::flash::Flash;
-use embassy_stm32::interrupt::InterruptExt;
 use embassy_stm32::peripherals::IWDG;
 use embassy_stm32::wdg::IndependentWatchdog;
 use embassy_stm32::{bind_interrupts, interrupt};
@@ -112,14 +111,12 @@ async fn main(spawner: Spawner) {
         watchdog.pet();
     }
     supply::watch();
-    // While nothing moves yet: switched on, this may erase a sector, and then the core stands still for a second or two. After
+    // While nothing moves yet: switched on, this may erase a sector, and then the core stands still for seconds. After
     // a reset something may be held, and the wearer must be able to let go of it.
     watchdog.pet();
     let mut flash = flash::Flash(Flash::new_blocking(p.FLASH));
     let erase = if switched_on { Erase::Allowed } else { Erase::Postponed };
     let (log, found) = tenax_logic::store::open(&mut flash, erase);
-    // SAFETY: its handler is bound above, and its stream is not running yet.
-    unsafe { interrupt::DMA2_STREAM0.enable() };
 
     let switches = Switches::new([p.PB12.into(), p.PB13.into(), p.PB14.into(), p.PB15.into()]);
     let button = Button::new(p.PC13, p.PC6, p.PC8);

@@ -39,7 +39,10 @@ pub fn open(
     config.rx_pull = Pull::Up;
     let port = Uart::new(port, rx, tx, tx_dma, rx_dma, Irqs, config).expect("a rate that APB1 reaches");
     let (up, down) = port.split();
-    (up, down.into_ring_buffered(RING.take()))
+    let mut down = down.into_ring_buffered(RING.take());
+    // What comes before somebody reads is kept.
+    down.start_uart();
+    (up, down)
 }
 
 /// Hands commands to control. Anything else is counted and skipped, and so is what comes faster than an [`Allowance`], before its CRC
@@ -53,8 +56,9 @@ pub async fn commands(mut line: DownLine) -> ! {
         // The frame that lost bytes fails its CRC.
         let Ok(count) = line.read(&mut bytes).await else {
             counts::BAD_FRAMES.add_one();
-            // DMA begins anew at the ring's start, and embassy (0.6.0, `start_uart`) takes all that lies behind for new: commands that
-            // were carried out before. They are there at once, and what comes now is not.
+            // Restarted, DMA begins anew at the ring's start (RM0383, section 9.5.6; embassy-rs/embassy#6592 saw it go on), and embassy,
+            // which clears nothing since #3541, takes all that lies behind for new: commands that were carried out. They are there at once,
+            // and what comes now is not.
             while poll_once(line.read(&mut bytes)).is_ready() {}
             continue;
         };
