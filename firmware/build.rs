@@ -9,7 +9,8 @@ fn main() {
     println!("cargo::rustc-link-search={}", root.display());
     println!("cargo::rerun-if-changed={}", root.join("memory.x").display());
     println!("cargo::rerun-if-changed=build.rs");
-    for argument in ["--nmagic", "--build-id=sha1", "-Tlink.x", "-Tdefmt.x"] {
+    let log = std::env::var_os("CARGO_FEATURE_LOG").map(|_| "-Tdefmt.x");
+    for argument in ["--nmagic", "--build-id=sha1", "-Tlink.x"].into_iter().chain(log) {
         println!("cargo::rustc-link-arg-bins={argument}");
     }
 }

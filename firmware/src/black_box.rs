@@ -1,6 +1,7 @@
 //! The last seconds of telemetry, in RAM that a reset does not clear: after a fault they stay until a client has read them.
 //! Only telemetry writes it. A frame that a reset cuts short has a wrong CRC; the count of bytes is raised after they are written. A power
 //! cut leaves nothing.
+//! Runs in telemetry (thread), in control (2) where a command reads it, and in whoever fails. Owns its RAM. Never formats, never waits.
 
 use core::mem::MaybeUninit;
 use core::num::NonZeroU32;
@@ -143,9 +144,14 @@ pub fn read(answer: &mut Up) {
     // It has room for both.
     let _fits = last.bytes.extend_from_slice(one);
     let _fits = last.bytes.extend_from_slice(two);
-    let length = (header(WHY_LENGTH) as usize).min(WHY_MAX);
+    let _fits = last.why.extend_from_slice(reason());
+}
+
+/// Why the run before the box was closed ended; nothing in an open one.
+pub fn reason() -> &'static [u8] {
+    let length = if header(FAULT) == 0 { 0 } else { (header(WHY_LENGTH) as usize).min(WHY_MAX) };
     // SAFETY: so many were written; nobody writes any more.
-    let _fits = last.why.extend_from_slice(unsafe { from_raw_parts(addr_of!(WHY).cast::<u8>(), length) });
+    unsafe { from_raw_parts(addr_of!(WHY).cast::<u8>(), length) }
 }
 
 fn empty() {

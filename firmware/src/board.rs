@@ -1,12 +1,16 @@
 //! The small parts of the board that control drives: button and light, select lines, vibration motor.
+//! Runs in control (2). Owns GPIOB 12 to 15, PC6, PC8, PC13, TIM4 with PB6. Never panics, never waits.
 
 use embassy_stm32::Peri;
-use embassy_stm32::gpio::{AnyPin, Input, Level, Output, Pull, Speed};
-use embassy_stm32::pac::gpio::vals::Moder;
-use embassy_stm32::pac::timer::vals::Ocm;
+use embassy_stm32::gpio::{AnyPin, Input, Level, Output, OutputType, Pull, Speed};
 use embassy_stm32::pac::{GPIOB, TIM4};
 use embassy_stm32::peripherals::{self, PB6, PC6, PC8, PC13};
+use embassy_stm32::time::Hertz;
+use embassy_stm32::timer::low_level::CountingMode;
+use embassy_stm32::timer::simple_pwm::{PwmPin, PwmPinConfig, SimplePwm, SimplePwmChannel};
 use tenax_hal_shim::motor::Duty;
+
+use crate::timing::{PWM_HZ, TICKS_PER_MILLE};
 
 /// The blue button of the NUCLEO (B1, UM1724 section 6.5), which pulls its pin low, and an LED with its resistor from its pin to ground. The NUCLEO's own LED is on a
 /// film's pin. Beside them the bridge's nFAULT, which is open drain and pulled low (DRV8874, section 7.3.4): not wired, it is high.
@@ -58,7 +62,8 @@ impl Switches {
         Self { _lines: lines.map(|line| Output::new(line, Level::Low, Speed::Low)) }
     }
 
-    /// Shows `select`, 0 to 15. All four lines step together: no other input is passed through on the way.
+    /// Shows `select`, 0 to 15. All four lines step together, with one store, which embassy's pins do not offer: no other input is passed
+    /// through on the way.
     pub fn show(&mut self, select: u8) {
         GPIOB.bsrr().write(|w| {
             for line in 0..4 {
@@ -73,35 +78,24 @@ impl Switches {
     }
 }
 
-/// The vibration motor's pin, and the function of it that is the timer's (DS10314, table 9).
-const VIBRATOR_PIN: usize = 6;
-const TIM4_CH1: u8 = 2;
-/// A period has as many ticks as a duty has per mille, each of five of the timer's at 100 MHz: no division, and above hearing.
-const DIVIDED_BY: u16 = 5;
-
-/// The vibration motor of the feedback to the wearer: TIM4 channel 1, 20 kHz, through a transistor. A reset leaves its pin floating, and the transistor's resistor switches it off.
+/// The vibration motor of the feedback to the wearer: TIM4 channel 1 through a transistor. A reset leaves its pin floating, and the transistor's resistor switches it off.
 pub struct Vibrator {
-    _taken: (),
+    _channel: SimplePwmChannel<'static, peripherals::TIM4>,
 }
 
 impl Vibrator {
-    pub fn new(_timer: Peri<'static, peripherals::TIM4>, _pin: Peri<'static, PB6>) -> Self {
-        TIM4.psc().write_value(DIVIDED_BY - 1);
-        TIM4.arr().write(|w| w.set_arr(Duty::FULL.as_per_mille() - 1));
-        TIM4.ccmr_output(0).write(|w| {
-            w.set_ocm(0, Ocm::PWM_MODE1);
-            w.set_ocpe(0, true);
-        });
-        TIM4.ccer().write(|w| w.set_cce(0, true));
-        TIM4.egr().write(|w| w.set_ug(true));
-        TIM4.cr1().write(|w| w.set_cen(true));
-        GPIOB.afr(0).modify(|w| w.set_afr(VIBRATOR_PIN, TIM4_CH1));
-        GPIOB.moder().modify(|w| w.set_moder(VIBRATOR_PIN, Moder::ALTERNATE));
-        Self { _taken: () }
+    pub fn new(timer: Peri<'static, peripherals::TIM4>, pin: Peri<'static, PB6>) -> Self {
+        let slow = PwmPinConfig { output_type: OutputType::PushPull, speed: Speed::Low, pull: Pull::None };
+        let pin = Some(PwmPin::new_with_config(pin, slow));
+        let pwm = SimplePwm::new(timer, pin, None, None, None, Hertz(PWM_HZ), CountingMode::EdgeAlignedUp);
+        let mut channel = pwm.split().ch1;
+        channel.enable();
+        Self { _channel: channel }
     }
 
+    /// Not through the channel: its `set_duty_cycle` has two ways to panic, and this is control's.
     pub fn drive(&mut self, duty: Duty) {
-        TIM4.ccr(0).write(|w| w.set_ccr(duty.as_per_mille()));
+        TIM4.ccr(0).write(|w| w.set_ccr(duty.as_per_mille() * TICKS_PER_MILLE));
     }
 }
 

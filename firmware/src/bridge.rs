@@ -1,6 +1,7 @@
 //! The motor bridge: TIM1 channel 1 closes (PA8), channel 4 opens (PA11), 20 kHz. The driven side is high throughout and the other one for
 //! the rest of each pulse: then both are, which short-circuits the motor (slow decay), and the mean voltage is the duty's. With the other
 //! side low the motor would coast between pulses, and lose its current to the supply.
+//! Runs in control (2), and in whoever fails. Owns TIM1, PA8, PA11. Never waits for an edge.
 
 #[path = "bridge/edges.rs"]
 mod edges;
@@ -10,14 +11,10 @@ use embassy_stm32::pac;
 use embassy_stm32::pac::gpio::vals::{Moder, Ospeedr};
 use embassy_stm32::pac::timer::vals::{Bkp, Ocm, Ossi};
 use embassy_stm32::peripherals::{PA8, PA11, TIM1};
+use embassy_stm32::rcc;
 use tenax_hal_shim::motor::{Duty, MotorBridge, MotorDrive};
 
-use crate::clock::CORE_HZ;
-
-/// Above what a person hears, and 5000 timer ticks a period: five for each per mille.
-const PWM_HZ: u32 = 20_000;
-const PERIOD: u16 = (CORE_HZ / PWM_HZ) as u16;
-const TICKS_PER_MILLE: u16 = PERIOD / Duty::FULL.as_per_mille();
+use crate::timing::{PWM_TICKS, TICKS_PER_MILLE};
 
 /// The timer's channels of both sides, counted from 0.
 const CLOSE: usize = 0;
@@ -34,8 +31,9 @@ pub struct Bridge {
 
 impl Bridge {
     pub fn new(_timer: Peri<'static, TIM1>, _close: Peri<'static, PA8>, _open: Peri<'static, PA11>) -> Self {
+        rcc::enable_and_reset::<TIM1>();
         let timer = pac::TIM1;
-        timer.arr().write(|w| w.set_arr(PERIOD - 1));
+        timer.arr().write(|w| w.set_arr(PWM_TICKS - 1));
         for side in [CLOSE, OPEN] {
             timer.ccmr_output(side / 2).modify(|w| {
                 w.set_ocm(side % 2, Ocm::PWM_MODE1);
@@ -69,8 +67,8 @@ impl Bridge {
     }
 
     fn drive_side(&mut self, side: usize, duty: Duty) {
-        let brakes = PERIOD - duty.as_per_mille() * TICKS_PER_MILLE;
-        self.show(if side == CLOSE { [PERIOD, brakes] } else { [brakes, PERIOD] });
+        let brakes = PWM_TICKS - duty.as_per_mille() * TICKS_PER_MILLE;
+        self.show(if side == CLOSE { [PWM_TICKS, brakes] } else { [brakes, PWM_TICKS] });
         if duty != self.placed {
             self.placed = duty;
             edges::place(brakes);

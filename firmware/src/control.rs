@@ -1,8 +1,9 @@
 //! The control task: a frame in, a motor drive out, every 0.5 ms. It waits for nothing but the next frame.
+//! Runs in its own executor (2). Owns bridge, board, watchdog and all of the logic. Never panics, waits, or touches flash and line.
 
 use embassy_stm32::peripherals::IWDG;
 use embassy_stm32::wdg::IndependentWatchdog;
-use tenax_hal_shim::channel::{FRAMES_PER_SLOW_FRAME, SLOW_HZ};
+use tenax_hal_shim::channel::FRAMES_PER_SLOW_FRAME;
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::motor::{MotorBridge, MotorDrive};
 use tenax_hal_shim::schedule::{Job, select_of_slot, slot_of};
@@ -18,6 +19,7 @@ use crate::counts;
 use crate::last_words;
 use crate::mail;
 use crate::scan::Scan;
+use crate::timing::LIVED_WELL;
 
 pub struct Control {
     pub device: Device,
@@ -28,9 +30,6 @@ pub struct Control {
     watchdog: IndependentWatchdog<'static, IWDG>,
     slow_frames: u16,
 }
-
-/// Slow frames after which a restart is not one of a row any more: ten seconds.
-const LIVED_WELL: u16 = 10 * SLOW_HZ as u16;
 
 impl Control {
     pub fn new(

@@ -1,4 +1,5 @@
 //! Counters of the image, as [`Counters`] has them. Every task adds to its own; telemetry reads them all.
+//! Runs anywhere. Owns its counters.
 
 use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
 

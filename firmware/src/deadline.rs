@@ -1,25 +1,27 @@
 //! The scan's own clock, and the one deadline on it: what waits for the converter waits until then at the longest.
 //! It is a compare register of TIM2, which counts microseconds in 32 bits: a new deadline is one store, far less than in the time
 //! driver's queue, and an old one needs no taking back.
+//! Its handler runs at the scan's priority (1). Owns TIM2. Never wakes but what waits for the scan, and telemetry's beat.
 
 use core::future::poll_fn;
 use core::task::Poll;
 
+use embassy_stm32::Peri;
 use embassy_stm32::interrupt::typelevel::{self, Handler, Interrupt};
 use embassy_stm32::pac;
 use embassy_stm32::peripherals::TIM2;
-use embassy_stm32::{Peri, interrupt::Priority};
+use embassy_stm32::rcc;
 use embassy_sync::waitqueue::AtomicWaker;
 
-use crate::clock::CORE_HZ;
 use crate::mail;
+use crate::timing::{BEAT_US, CORE_HZ};
 
 /// The clock, us. It wraps after 71 minutes.
 pub fn clock_us() -> u32 {
     pac::TIM2.cnt().read()
 }
 
-pub static WAITING: AtomicWaker = AtomicWaker::new();
+pub static SCAN_WAKER: AtomicWaker = AtomicWaker::new();
 
 /// An instant, us; they wrap after 71 minutes, so two of them are compared only if they are less than half of that apart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,6 +51,7 @@ pub struct Deadline {
 
 impl Deadline {
     pub fn new(timer: Peri<'static, TIM2>) -> Self {
+        rcc::enable_and_reset::<TIM2>();
         pac::TIM2.arr().write_value(u32::MAX);
         pac::TIM2.psc().write_value((CORE_HZ / 1_000_000 - 1) as u16);
         // The update takes the prescaler up.
@@ -60,7 +63,6 @@ impl Deadline {
             w.set_ccie(0, true);
             w.set_ccie(BEAT, true);
         });
-        typelevel::TIM2::set_priority(Priority::P1);
         // SAFETY: the handler is bound in `main`, and nothing is in a critical section yet.
         unsafe { typelevel::TIM2::enable() };
         Self { _timer: timer }
@@ -80,7 +82,7 @@ impl Deadline {
         // Not `at` itself: at the interrupt it has to be over.
         pac::TIM2.ccr(0).write_value(at.after(1).0);
         poll_fn(move |context| {
-            WAITING.register(context.waker());
+            SCAN_WAKER.register(context.waker());
             let over = self.now().is_after(at);
             match ready() {
                 Some(ready) => Poll::Ready(Some(ready)),
@@ -99,7 +101,7 @@ impl Handler<typelevel::TIM2> for OnDeadline {
         let seen = pac::TIM2.sr().read();
         // Those that were seen are cleared, by writing 0.
         pac::TIM2.sr().write(|w| w.0 = !seen.0);
-        WAITING.wake();
+        SCAN_WAKER.wake();
         if seen.ccif(BEAT) {
             let (now, due) = (clock_us(), pac::TIM2.ccr(BEAT).read().wrapping_add(BEAT_US));
             // An erase stalls the core for longer: one that is over would come after 71 minutes.
@@ -110,6 +112,5 @@ impl Handler<typelevel::TIM2> for OnDeadline {
     }
 }
 
-/// The compare register of what telemetry does ten times a second, and from one to the next.
+/// The compare register of what telemetry does ten times a second.
 const BEAT: usize = 2;
-const BEAT_US: u32 = 100_000;

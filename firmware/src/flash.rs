@@ -1,63 +1,27 @@
-//! The chip's last two flash sectors, 6 and 7, as the log's flash. `memory.x` keeps the image out of them.
-//! The core stands still while a word is programmed (16 us, at most 100) and while a sector is erased (1 s, at most 2); interrupts wait,
-//! DMA and timers go on. embassy's driver erases by bytes after a reset, twice as long, and waits for ever if the flash never gets ready.
+//! The chip's last two flash sectors, 6 and 7, as the log's flash, through embassy's driver. `memory.x` keeps the image out of them.
+//! The core stands still while a word is programmed (16 us, at most 100) and while a sector is erased, by bytes (2 s, at most 4; DS10314,
+//! flash memory programming); interrupts wait, DMA and timers go on.
+//! Runs at the start and in the store (thread). Owns the flash interface, but not the option bytes. Never runs while the supply is low.
 
 use core::ptr::addr_of;
 
-use embassy_stm32::Peri;
-use embassy_stm32::pac::FLASH as INTERFACE;
-use embassy_stm32::pac::flash::regs::Cr;
-use embassy_stm32::pac::flash::vals::Psize;
-use embassy_stm32::peripherals::FLASH;
+use embassy_stm32::flash::{Blocking, Flash as Driver};
 use tenax_hal_shim::flash::{BLANK, FlashArea, FlashFailed, Sector};
-
-use crate::deadline::clock_us;
 
 unsafe extern "C" {
     static __store_start: u32;
 }
 
-const SECTOR_WORDS: usize = 128 * 1024 / 4;
-/// The number of the first of them (RM0383, table 4).
-const FIRST_SECTOR: u8 = 6;
-const KEYS: [u32; 2] = [0x4567_0123, 0xCDEF_89AB];
-/// Longer than any word and any sector takes (DS10314, flash memory programming).
-const PATIENCE_WORD_US: u32 = 1_000;
-const PATIENCE_SECTOR_US: u32 = 4_000_000;
+const SECTOR_BYTES: u32 = 128 * 1024;
+const SECTOR_WORDS: usize = SECTOR_BYTES as usize / 4;
+/// The first of them, from the flash's start (RM0383, table 4).
+const OFFSET: u32 = 256 * 1024;
 
-pub struct Flash {
-    _interface: Peri<'static, FLASH>,
-}
+pub struct Flash(pub Driver<'static, Blocking>);
 
-impl Flash {
-    pub fn new(interface: Peri<'static, FLASH>) -> Self {
-        Self { _interface: interface }
-    }
-
-    /// Unlocks the interface for one operation, which `start` begins, and locks it again.
-    fn operate(&mut self, control: Cr, patience_us: u32, start: impl FnOnce()) -> Result<(), FlashFailed> {
-        if INTERFACE.cr().read().lock() {
-            for key in KEYS {
-                INTERFACE.keyr().write_value(key);
-            }
-        }
-        // What an operation before this one left behind: flags are cleared by writing them.
-        INTERFACE.sr().modify(|_| {});
-        INTERFACE.cr().write_value(control);
-        start();
-        let begun = clock_us();
-        while INTERFACE.sr().read().bsy() && clock_us().wrapping_sub(begun) <= patience_us {}
-        let status = INTERFACE.sr().read();
-        INTERFACE.cr().write(|w| w.set_lock(true));
-        let failed = status.wrperr() || status.pgaerr() || status.pgperr() || status.pgserr();
-        if !status.bsy() && !failed { Ok(()) } else { Err(FlashFailed) }
-    }
-}
-
-/// The address of a word. None outside the sectors.
-fn address(sector: Sector, word: usize) -> Option<*mut u32> {
-    (word < SECTOR_WORDS)
-        .then(|| addr_of!(__store_start).cast_mut().wrapping_add(sector as usize * SECTOR_WORDS + word))
+/// Bytes from the flash's start. None outside the sectors.
+fn offset(sector: Sector, word: usize) -> Option<u32> {
+    (word < SECTOR_WORDS).then(|| OFFSET + sector as u32 * SECTOR_BYTES + 4 * word as u32)
 }
 
 impl FlashArea for Flash {
@@ -66,27 +30,19 @@ impl FlashArea for Flash {
     }
 
     fn read(&self, sector: Sector, word: usize) -> u32 {
-        // SAFETY: an aligned word of the flash, which is always mapped. Only `self` changes it.
-        address(sector, word).map_or(BLANK, |address| unsafe { address.read_volatile() })
+        let Some(at) = offset(sector, word) else { return BLANK };
+        let store = addr_of!(__store_start).cast::<u8>();
+        // SAFETY: an aligned word of the two sectors, which are always mapped. Only `self` changes it.
+        unsafe { store.add((at - OFFSET) as usize).cast::<u32>().read_volatile() }
     }
 
     fn program(&mut self, sector: Sector, word: usize, value: u32) -> Result<(), FlashFailed> {
-        let address = address(sector, word).ok_or(FlashFailed)?;
-        if self.read(sector, word) != BLANK {
-            return Err(FlashFailed);
-        }
-        let mut control = Cr(0);
-        control.set_pg(true);
-        control.set_psize(Psize::PSIZE32);
-        // SAFETY: an aligned word of the two sectors, which hold no code and no variable, and nobody else writes them.
-        self.operate(control, PATIENCE_WORD_US, || unsafe { address.write_volatile(value) })
+        let at = offset(sector, word).filter(|_| self.read(sector, word) == BLANK).ok_or(FlashFailed)?;
+        self.0.blocking_write(at, &value.to_le_bytes()).map_err(|_| FlashFailed)
     }
 
     fn erase(&mut self, sector: Sector) -> Result<(), FlashFailed> {
-        let mut control = Cr(0);
-        control.set_ser(true);
-        control.set_snb(FIRST_SECTOR + sector as u8);
-        control.set_psize(Psize::PSIZE32);
-        self.operate(control, PATIENCE_SECTOR_US, || INTERFACE.cr().modify(|w| w.set_strt(true)))
+        let from = offset(sector, 0).ok_or(FlashFailed)?;
+        self.0.blocking_erase(from, from + SECTOR_BYTES).map_err(|_| FlashFailed)
     }
 }

@@ -1,6 +1,7 @@
 //! The ring that DMA writes the converter's codes to: two halves of a frame each, one of which is read while the other is written.
 //! embassy's ring buffer gives any number of codes from anywhere in the ring, one by one. Here a frame is a half, which is read where it
 //! lies, two codes in a word.
+//! Its handler runs at the scan's priority (1), the rest in control (2). Owns DMA2's stream 0 and the ring. Never touches the converter.
 
 use core::sync::atomic::{AtomicU32, Ordering, fence};
 
@@ -13,7 +14,7 @@ use tenax_hal_shim::channel::{SCAN_LEN, SCANS_PER_FRAME};
 use tenax_hal_shim::frame::{Frame, PAIRS};
 use tenax_logic::restart::Mark;
 
-use crate::deadline::WAITING;
+use crate::deadline::SCAN_WAKER;
 use crate::last_words::give_up;
 
 const HALF: usize = PAIRS * SCANS_PER_FRAME;
@@ -123,7 +124,7 @@ impl Handler<typelevel::DMA2_STREAM0> for OnHalf {
         let filled = u32::from(seen.htif(STREAM)) + u32::from(seen.tcif(STREAM));
         // No other code writes to it while the stream runs, so this needs no exclusive access.
         FILLED.store(FILLED.load(Ordering::Relaxed).wrapping_add(filled), Ordering::Release);
-        WAITING.wake();
+        SCAN_WAKER.wake();
     }
 }
 

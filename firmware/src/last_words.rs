@@ -1,5 +1,6 @@
 //! The end of a run by a fault: the bridge goes off first, then a mark is left in RAM, which a reset does not clear, and the chip is
 //! reset. And a guard under the stack, whose fault is one of them.
+//! Runs in whoever fails, all interrupts off. Owns its words in RAM, and the MPU. Never waits, never uses the line or RTT.
 
 use core::mem::MaybeUninit;
 use core::ptr::{addr_of, addr_of_mut};
@@ -18,7 +19,7 @@ const MARKS: [(Mark, u32); 3] =
 
 /// Not initialised by the runtime: a reset leaves it as it is.
 #[unsafe(link_section = ".uninit.mark")]
-static mut KEPT: MaybeUninit<[u32; 2]> = MaybeUninit::uninit();
+static mut MARK_AND_RESTARTS: MaybeUninit<[u32; 2]> = MaybeUninit::uninit();
 const MARK: usize = 0;
 const RESTARTS: usize = 1;
 
@@ -47,12 +48,12 @@ pub fn lived_well() {
 
 fn kept(place: usize) -> u32 {
     // SAFETY: an aligned word in it; whoever writes it is never interrupted by one who reads it, and any bits are a u32.
-    unsafe { addr_of!(KEPT).cast::<u32>().add(place).read_volatile() }
+    unsafe { addr_of!(MARK_AND_RESTARTS).cast::<u32>().add(place).read_volatile() }
 }
 
 fn keep(place: usize, word: u32) {
     // SAFETY: an aligned word in it, written whole.
-    unsafe { addr_of_mut!(KEPT).cast::<u32>().add(place).write_volatile(word) }
+    unsafe { addr_of_mut!(MARK_AND_RESTARTS).cast::<u32>().add(place).write_volatile(word) }
 }
 
 /// Switches the bridge off, leaves the mark and the reason, and resets the chip.
@@ -61,17 +62,15 @@ pub fn give_up(mark: Mark, why: &str) -> ! {
     SCB::sys_reset()
 }
 
-/// Switches the bridge off, leaves the mark and the reason, with all interrupts off from now on. True: there is a mark already.
-pub fn leave(mark: Mark, why: &str) -> bool {
+/// Switches the bridge off, leaves the mark and the reason, with all interrupts off from now on.
+pub fn leave(mark: Mark, why: &str) {
     cortex_m::interrupt::disable();
     bridge::off();
     board::vibrator_off();
-    let is_left = kept(MARK) != 0;
     if let Some((_, word)) = MARKS.iter().find(|(own, _)| *own == mark) {
         keep(MARK, *word);
     }
     black_box::why(why.as_bytes());
-    is_left
 }
 
 /// A fault of the core: as a panic. Its reason is PC, LR, CFSR, HFSR and BFAR (ARM DDI 0403E, section B3.2).

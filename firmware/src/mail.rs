@@ -1,5 +1,6 @@
 //! The bounded boxes between control, which never waits, and the tasks of the serial line and of the store, which do.
 //! embassy's channels keep a `RefCell` inside, which is a way to panic.
+//! Runs in control (2) and threads, each copy with interrupts off. Owns the boxes. Never waits on control's side.
 
 use core::cell::Cell;
 use core::future::poll_fn;
@@ -55,14 +56,14 @@ impl<T, const N: usize> Mailbox<T, N> {
 
 /// Messages on their way up. With everything on, eight come in a slow frame and take 11.7 of its 12.5 ms on the line; twenty events
 /// may come with them at once, and an answer that takes 4 ms. What does not fit is dropped.
-static UP: Mailbox<Received<Up>, 32> = Mailbox::new();
+static TELEMETRY: Mailbox<Received<Up>, 32> = Mailbox::new();
 static COUNTERS_DUE: AtomicBool = AtomicBool::new(false);
-static UP_WAITING: AtomicWaker = AtomicWaker::new();
-static NUMBER: AtomicU16 = AtomicU16::new(0);
-static DOWN: Mailbox<Received<Down>, { BURST as usize }> = Mailbox::new();
-static RECORD: Mutex<CriticalSectionRawMutex, Cell<Option<Record>>> = Mutex::new(Cell::new(None));
-static RECORD_WAITS: AtomicBool = AtomicBool::new(false);
-static RECORD_WAITING: AtomicWaker = AtomicWaker::new();
+static TELEMETRY_WAKER: AtomicWaker = AtomicWaker::new();
+static NEXT_SEQUENCE: AtomicU16 = AtomicU16::new(0);
+static COMMANDS: Mailbox<Received<Down>, { BURST as usize }> = Mailbox::new();
+static PENDING_RECORD: Mutex<CriticalSectionRawMutex, Cell<Option<Record>>> = Mutex::new(Cell::new(None));
+static RECORD_IS_PENDING: AtomicBool = AtomicBool::new(false);
+static STORE_WAKER: AtomicWaker = AtomicWaker::new();
 /// The store waits for the end of a tick.
 static TICK_WANTED: AtomicBool = AtomicBool::new(false);
 /// When it ended, us.
@@ -71,11 +72,11 @@ static TICK_ENDED: Signal<CriticalSectionRawMutex, u32> = Signal::new();
 /// Hands a message to telemetry, numbered. Never waits: if the line is behind, the message is dropped and counted. For control only,
 /// which no other sender interrupts.
 pub fn post(message: Up) {
-    let sequence = NUMBER.fetch_add(1, Relaxed);
-    if !UP.put(Received { sequence, message }) {
+    let sequence = NEXT_SEQUENCE.fetch_add(1, Relaxed);
+    if !TELEMETRY.put(Received { sequence, message }) {
         counts::TELEMETRY_DROPPED.add_one();
     }
-    UP_WAITING.wake();
+    TELEMETRY_WAKER.wake();
 }
 
 /// [`post`] for tasks that control interrupts: number and place are taken in one critical section. A message of control between the two
@@ -85,20 +86,20 @@ pub fn post_beside_control(message: Up) {
     let mut item = Received { sequence: 0, message };
     // SAFETY: the closure does not come back here.
     let is_put = unsafe {
-        UP.0.lock_mut(|queue| {
-            item.sequence = NUMBER.fetch_add(1, Relaxed);
+        TELEMETRY.0.lock_mut(|queue| {
+            item.sequence = NEXT_SEQUENCE.fetch_add(1, Relaxed);
             queue.push_back(item).is_ok()
         })
     };
     if !is_put {
         counts::TELEMETRY_DROPPED.add_one();
     }
-    UP_WAITING.wake();
+    TELEMETRY_WAKER.wake();
 }
 
 pub fn counters_due() {
     COUNTERS_DUE.store(true, Relaxed);
-    UP_WAITING.wake();
+    TELEMETRY_WAKER.wake();
 }
 
 pub fn are_counters_due() -> bool {
@@ -110,9 +111,9 @@ pub fn are_counters_due() -> bool {
 pub fn next_message(place: &mut MaybeUninit<Received<Up>>) -> impl Future<Output = Option<&Received<Up>>> {
     let mut place = Some(place);
     poll_fn(move |context| {
-        UP_WAITING.register(context.waker());
+        TELEMETRY_WAKER.register(context.waker());
         let Some(free) = place.take() else { return Poll::Ready(None) };
-        if UP.take_to(free) {
+        if TELEMETRY.take_to(free) {
             // SAFETY: it was put there just now.
             return Poll::Ready(Some(unsafe { free.assume_init_ref() }));
         }
@@ -123,29 +124,29 @@ pub fn next_message(place: &mut MaybeUninit<Received<Up>>) -> impl Future<Output
 
 /// Hands a command to control. Never waits: false if control has not taken the ones before.
 pub fn hand_over(command: Received<Down>) -> bool {
-    DOWN.put(command)
+    COMMANDS.put(command)
 }
 
 pub fn next_command() -> Option<Received<Down>> {
-    DOWN.take()
+    COMMANDS.take()
 }
 
 pub fn store_is_free() -> bool {
-    !RECORD_WAITS.load(Relaxed)
+    !RECORD_IS_PENDING.load(Relaxed)
 }
 
 /// Hands a record to the store. Never waits: only control does so, and only when the store is free.
 pub fn save(record: Record) {
-    RECORD.lock(|cell| cell.set(Some(record)));
-    RECORD_WAITS.store(true, Relaxed);
-    RECORD_WAITING.wake();
+    PENDING_RECORD.lock(|cell| cell.set(Some(record)));
+    RECORD_IS_PENDING.store(true, Relaxed);
+    STORE_WAKER.wake();
 }
 
 pub fn next_record() -> impl Future<Output = Record> {
     poll_fn(|context| {
-        RECORD_WAITING.register(context.waker());
-        let Some(record) = RECORD.lock(Cell::take) else { return Poll::Pending };
-        RECORD_WAITS.store(false, Relaxed);
+        STORE_WAKER.register(context.waker());
+        let Some(record) = PENDING_RECORD.lock(Cell::take) else { return Poll::Pending };
+        RECORD_IS_PENDING.store(false, Relaxed);
         Poll::Ready(record)
     })
 }

@@ -1,15 +1,6 @@
 //! The image of the fingertip's microcontroller (STM32F411RE).
-//! Tasks move data; what it means is decided in `tenax-logic`. Who runs where, the most urgent first:
-//!
-//! | who | runs in | priority | worst if it were wrong |
-//! |---|---|---|---|
-//! | `bridge::off` in a panic or fault | the faulting context | all interrupts off | the motor stays driven |
-//! | scan's DMA, its deadline | their interrupts | 1 | a deadline is noticed late: a lost frame stays unnoticed |
-//! | [`control`]: frame, logic, bridge, watchdog | executor in interrupt I2C3_ER | 2 | switches step late, ticks run late |
-//! | the serial line's interrupts | USART2, DMA1 | 6 | below control or control jitters by them |
-//! | [`serial`]: telemetry, commands | thread executor | none | messages are dropped and counted, control goes on |
-//! | [`store`]: a word of flash after every fourth tick | thread executor | none | the core stalls in a tick |
-//! | idle | thread executor | none | sleeps in WFE until an interrupt |
+//! Tasks move data; what it means is decided in `tenax-logic`. [`interrupts`] has every priority, [`timing`] every time; each file's head
+//! says where it runs and at which priority, what it owns and what it never does.
 //!
 //! Control never waits for the others: what it hands over goes into a bounded box ([`mail`]) or is dropped. If it stops,
 //! the watchdog, which only it feeds, resets the chip after 0.1 s and the bridge is off from that instant. Before its first tick it is 8 s.
@@ -25,24 +16,25 @@ mod counts;
 mod deadline;
 mod flash;
 mod halves;
+mod interrupts;
 mod last_words;
-mod line;
+mod log;
 mod mail;
 mod scan;
 mod serial;
 mod store;
 mod supply;
+mod timing;
 
 use core::panic::PanicInfo;
 use core::ptr::addr_of;
 
 use cortex_m::peripheral::SCB;
-use defmt_rtt as _;
 use embassy_executor::{InterruptExecutor, SpawnError, SpawnToken, Spawner};
-use embassy_stm32::interrupt::{InterruptExt, Priority};
+use embassy_stm32::flash::Flash;
 use embassy_stm32::peripherals::IWDG;
 use embassy_stm32::wdg::IndependentWatchdog;
-use embassy_stm32::{Peripherals, bind_interrupts, interrupt};
+use embassy_stm32::{bind_interrupts, interrupt};
 use static_cell::{ConstStaticCell, StaticCell};
 use tenax_hal_shim::channel::FRAME_HZ;
 use tenax_hal_shim::motor::MotorBridge;
@@ -55,6 +47,7 @@ use tenax_logic::store::Erase;
 use crate::board::{Button, Switches, Vibrator};
 use crate::bridge::Bridge;
 use crate::deadline::Deadline;
+use crate::timing::{CONTROL_US, START_US, SUPPLY_LOOK_US};
 
 bind_interrupts!(struct Irqs {
     DMA2_STREAM0 => halves::OnHalf;
@@ -62,19 +55,13 @@ bind_interrupts!(struct Irqs {
 });
 
 /// Runs control, above the thread executor. I2C3 itself is not used.
-static URGENT: InterruptExecutor = InterruptExecutor::new();
+static CONTROL_EXECUTOR: InterruptExecutor = InterruptExecutor::new();
 
 #[interrupt]
 unsafe fn I2C3_ER() {
     // SAFETY: this is that interrupt, and it is enabled by `start` only.
-    unsafe { URGENT.on_interrupt() }
+    unsafe { CONTROL_EXECUTOR.on_interrupt() }
 }
-
-/// Periods of the watchdog, us: for a start, which may erase a sector (2 s), and while control runs, which feeds it 200 times in one.
-const START_US: u32 = 8_000_000;
-const CONTROL_US: u32 = 100_000;
-/// From one look at a supply that is low to the next.
-const SUPPLY_LOOK_US: u32 = 10_000;
 
 static SCAN_RING: ConstStaticCell<[u32; halves::RING_LEN]> = ConstStaticCell::new([0; halves::RING_LEN]);
 
@@ -89,12 +76,12 @@ fn made(new: impl FnOnce() -> control::Control) -> &'static mut control::Control
 
 #[embassy_executor::main]
 async fn main(spawner: Spawner) {
-    // SAFETY: nobody else takes them, and embassy's own start, which would, is not used: it has ways to panic.
-    let p = unsafe { Peripherals::steal() };
-    let mut watchdog = IndependentWatchdog::new(p.IWDG, START_US);
+    // SAFETY: taken once more below, when this one is given up.
+    let mut watchdog = IndependentWatchdog::new(unsafe { IWDG::steal() }, START_US);
     watchdog.unleash();
-    clock::enable();
-    // Before the clocks are waited for: until then the pins float.
+    let mut p = embassy_stm32::init(clock::slow());
+    interrupts::set_priorities();
+    // Before anything is waited for: until then the pins float.
     bridge::hold_low();
     last_words::guard_stack();
     let supplied = supply::has_risen();
@@ -105,15 +92,15 @@ async fn main(spawner: Spawner) {
         black_box::why(b"brown-out");
     }
     black_box::start(after, switched_on);
-    let crystal = clock::has_crystal(switched_on || browned_out);
-    let crystal = clock::start(crystal);
+    // Where the brown-out reset does not hold the chip below 2.83 V, the supply may be too low for 100 MHz.
+    while !supply::has_brown_out_reset() && !supply::has_risen() {
+        watchdog.pet();
+    }
+    let crystal = clock::start(switched_on || browned_out, &mut p.RCC);
     // Before anything that could take time: from here on both sides are held low.
     let bridge = Bridge::new(p.TIM1, p.PA8, p.PA11);
     let deadline = Deadline::new(p.TIM2);
-    if crystal {
-        clock::watch_crystal();
-    }
-    let (up, down) = line::open(p.USART2, (p.DMA1_CH5, p.DMA1_CH6), (p.PA2, p.PA3));
+    let (up, down) = serial::open(p.USART2, (p.PA3, p.PA2), (p.DMA1_CH5, p.DMA1_CH6));
     // The first of all messages: a hello that comes after others would look like a second start.
     let after = if supplied { after } else { after.or(Some(Fault::SupplySagged)) };
     mail::post(Up::Hello { frame_hz: FRAME_HZ as u16, after });
@@ -124,23 +111,17 @@ async fn main(spawner: Spawner) {
         watchdog.pet();
     }
     supply::watch();
-    // While nothing moves yet: switched on, this may erase a sector, and then the core stands still for a second or two. After
+    // While nothing moves yet: switched on, this may erase a sector, and then the core stands still for seconds. After
     // a reset something may be held, and the wearer must be able to let go of it.
-    let mut flash = flash::Flash::new(p.FLASH);
+    watchdog.pet();
+    let mut flash = flash::Flash(Flash::new_blocking(p.FLASH));
     let erase = if switched_on { Erase::Allowed } else { Erase::Postponed };
     let (log, found) = tenax_logic::store::open(&mut flash, erase);
-    clock::accelerate_flash();
-    interrupt::DMA2_STREAM0.set_priority(Priority::P1);
-    // SAFETY: its handler is bound above, and its stream is not running yet.
-    unsafe { interrupt::DMA2_STREAM0.enable() };
-    interrupt::I2C3_ER.set_priority(Priority::P2);
-    defmt::info!("tenax: started, after {}", after.is_some());
 
     let switches = Switches::new([p.PB12.into(), p.PB13.into(), p.PB14.into(), p.PB15.into()]);
     let button = Button::new(p.PC13, p.PC6, p.PC8);
     let vibrator = Vibrator::new(p.TIM4, p.PB6);
-    // SAFETY: the one that had longer to wait is given up.
-    let watchdog = IndependentWatchdog::new(unsafe { IWDG::steal() }, CONTROL_US);
+    let watchdog = IndependentWatchdog::new(p.IWDG, CONTROL_US);
     if stay_off {
         // No control, for it may be what failed: the button opens.
         wait_for_button(&deadline, bridge, &button, watchdog).await
@@ -167,7 +148,7 @@ async fn main(spawner: Spawner) {
         store::restored(&flash, &found, mail::post);
     }
     spawner.spawn(once(store::store(flash, log)));
-    let urgent = URGENT.start(interrupt::I2C3_ER);
+    let urgent = CONTROL_EXECUTOR.start(interrupt::I2C3_ER);
     urgent.spawn(once(control::control(scan, control)));
 }
 
@@ -212,9 +193,10 @@ fn once<S>(task: Result<SpawnToken<S>, SpawnError>) -> SpawnToken<S> {
     task.expect("each task is started once")
 }
 
+/// Its message is left out: core's formatting would take 6 kB of flash.
 #[panic_handler]
 fn on_panic(info: &PanicInfo) -> ! {
-    let in_here = last_words::leave(Mark::Panicked, "");
+    last_words::leave(Mark::Panicked, "");
     if let Some(place) = info.location() {
         // The end of a path says most.
         let path = place.file().as_bytes();
@@ -222,9 +204,6 @@ fn on_panic(info: &PanicInfo) -> ! {
         black_box::why(path.get(from..).unwrap_or(path));
         black_box::why(b":");
         black_box::why_decimal(place.line());
-    }
-    if !in_here {
-        defmt::error!("{}", defmt::Display2Format(info));
     }
     SCB::sys_reset()
 }

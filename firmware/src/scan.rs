@@ -1,11 +1,12 @@
 //! The 14-channel scan: TIM3 starts it in hardware 8000 times a second, DMA carries it, one interrupt a frame.
 //!
-//! embassy's own ring-buffered converter cannot do this: it writes every rank into SQR3, which holds six; it never looks
-//! at OVR, after which the converter is silent for ever; and it starts one scan by software ahead of the first timed one.
-//! So the sequence is written here, through the PAC, and so is its DMA ([`halves`](crate::halves)).
+//! embassy's own ring-buffered converter (embassy-stm32 0.6.0) cannot do this: it writes every rank into SQR3, which holds six (mended
+//! upstream after 0.6.0: embassy-rs/embassy#5791); it never looks at OVR, after which the converter is silent for ever; and it starts one
+//! scan by software ahead of the first timed one. So the sequence is written here, through the PAC, and so is its DMA ([`halves`](crate::halves)).
 //!
 //! The scan's timer and the deadline's count the same clock, so the two never drift apart and the instant of every frame is known without
 //! asking the converter: a frame that does not come in time is lost, and after a restart the sequence numbers go on where time has got to.
+//! Runs in control (2). Owns ADC1, TIM3 and the analogue pins. Never waits without a deadline.
 
 use embassy_stm32::Peri;
 use embassy_stm32::pac::adc::regs::{Smpr1, Smpr2, Sqr1, Sqr2, Sqr3};
@@ -14,22 +15,19 @@ use embassy_stm32::pac::adccommon::vals::Adcpre;
 use embassy_stm32::pac::timer::vals::Mms;
 use embassy_stm32::pac::{self, ADC1_COMMON};
 use embassy_stm32::peripherals::{ADC1, DMA2_CH0, TIM3};
-use tenax_hal_shim::channel::{FRAME_HZ, SCAN, SCAN_HZ, SCAN_LEN};
+use embassy_stm32::rcc;
+use tenax_hal_shim::channel::{SCAN, SCAN_HZ, SCAN_LEN};
 use tenax_hal_shim::frame::Frame;
 
-use crate::clock::CORE_HZ;
 use crate::counts;
 use crate::deadline::{Deadline, Micros};
 use crate::halves::{Halves, RING_LEN};
+use crate::timing::{CORE_HZ, FRAME_US, PATIENCE_US, SCAN_US};
 
-const SCAN_US: u32 = 1_000_000 / SCAN_HZ;
-const FRAME_US: u32 = 1_000_000 / FRAME_HZ;
 /// EXTSEL of the regular group: TIM3's TRGO (RM0383, section 11.12.3).
 const EXTSEL_TIM3_TRGO: u8 = 0b1000;
 /// 56 + 12 cycles at 25 MHz: a scan takes 38 us of its 125, and sources of up to 20 kohm settle (DS10314, equation 1).
 const SAMPLE_TIME: SampleTime = SampleTime::CYCLES56;
-/// A frame that is this late is not waited for any more, us: the switches have begun to show the following one.
-const PATIENCE_US: u32 = SCAN_US;
 
 pub struct Scan {
     _adc: Peri<'static, ADC1>,
@@ -62,6 +60,8 @@ impl Scan {
         deadline: Deadline,
         _pins: impl Sized,
     ) -> Self {
+        rcc::enable_and_reset::<TIM3>();
+        rcc::enable_and_reset::<ADC1>();
         for (port, analog) in [pac::GPIOA, pac::GPIOB, pac::GPIOC].into_iter().zip(ANALOG) {
             port.moder().modify(|w| w.0 |= analog);
         }

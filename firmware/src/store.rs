@@ -1,6 +1,7 @@
 //! The store task: what has to outlive a power cut goes into flash, a word every few ticks.
 //! Programming a word stalls the core, so each begins within 0.25 ms after a tick's end, when the next frame is 0.1 ms away or more: even
 //! at its longest, 0.1 ms, it is over before control is needed again. Nothing is erased while the hand works.
+//! Runs in thread. Owns the log in flash. Never erases, and never begins a word but behind a tick.
 
 use tenax_hal_shim::flash::FlashFailed;
 use tenax_hal_shim::wire::{Event, EventKind, KEPT_MAX, Restored, Up};
@@ -11,11 +12,9 @@ use tenax_logic::store::{Found, Log, Refused};
 
 use crate::deadline::clock_us;
 use crate::flash::Flash;
+use crate::timing::{TICKS_PER_WORD, WORD_BEGINS_US};
 use crate::{counts, mail};
 
-/// Ticks from one word to the next: the network's 78 words take 0.16 s, and the serial line keeps its share of the core.
-const TICKS_PER_WORD: u32 = 4;
-const LATEST_US: u32 = 250;
 const _: () = assert!(PAYLOAD_BYTES <= KEPT_MAX);
 
 pub fn restore(device: &mut Device, flash: &Flash, found: &Found) {
@@ -68,7 +67,7 @@ async fn save(flash: &mut Flash, log: &mut Log, record: &Record) -> Result<(), R
         let mut ended_us = mail::tick_over().await;
         // Telemetry may have been in the middle of its longest message: 18 000 instructions, 0.18 to 0.36 ms. Argued, not seen: no word
         // of a run with everything on the line has waited for it, at 50 million instructions a second neither.
-        while clock_us().wrapping_sub(ended_us) > LATEST_US {
+        while clock_us().wrapping_sub(ended_us) > WORD_BEGINS_US {
             ended_us = mail::tick_over().await;
         }
         match saving.step(flash) {

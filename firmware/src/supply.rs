@@ -4,15 +4,16 @@
 //! (RM0383, section 5.2.3) says that the supply falls below 2.93 V: the bridge goes off and the chip is reset while code still
 //! runs as it should. Level 7 would be 3.03 V falling and 3.14 V rising: a dip of 0.25 V that harms nothing would let go of the
 //! motor, and a rail of 3.1 V would never start. The brown-out reset at level 3 holds the chip from 2.83 V on.
+//! Its handler is above all (0). Owns PWR and EXTI's line 16. Only reads the option bytes.
 
 use cortex_m::asm::delay;
 use embassy_stm32::interrupt;
-use embassy_stm32::interrupt::{InterruptExt, Priority};
+use embassy_stm32::interrupt::InterruptExt;
 use embassy_stm32::pac::{EXTI, FLASH, PWR};
 use tenax_logic::restart::Mark;
 
-use crate::clock::{LOOK_CYCLES, LOOKS_PER_S};
 use crate::last_words;
+use crate::timing::{LOOK_CYCLES, SUPPLY_LOOKS};
 
 /// PLS: 2.93 V falling, 3.03 V rising.
 const LEVEL_6: u8 = 6;
@@ -29,7 +30,7 @@ pub fn has_risen() -> bool {
         w.set_pls(LEVEL_6);
         w.set_pvde(true);
     });
-    (0..LOOKS_PER_S).any(|_| {
+    (0..SUPPLY_LOOKS).any(|_| {
         // The detector itself needs some microseconds to start.
         delay(LOOK_CYCLES);
         !is_low()
@@ -41,7 +42,6 @@ pub fn watch() {
     EXTI.rtsr(0).modify(|w| w.set_line(LINE, true));
     EXTI.pr(0).write(|w| w.set_line(LINE, true));
     EXTI.imr(0).modify(|w| w.set_line(LINE, true));
-    interrupt::PVD.set_priority(Priority::P0);
     // SAFETY: its handler touches nothing that anybody else uses.
     unsafe { interrupt::PVD.enable() };
     // Its edge may have come before the line was cleared.

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 /// A detector. Its number is its bit in a [`DetectorSet`]; new ones are added at the end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(u8)]
 pub enum DetectorId {
     /// S1: vibration of the PVDF film (Prosthesis, section 5).

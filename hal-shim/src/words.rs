@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 use crate::detector::DetectorId;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum GripMode {
     /// A sensor that the reflex needs is missing (at boot: not yet seen). The reflex commands nothing; the wearer still drives the hand.
     #[default]
@@ -45,6 +46,7 @@ impl fmt::Display for GripMode {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Cause {
     SensorsReady,
     SensorsLost,
@@ -73,6 +75,7 @@ impl fmt::Display for Cause {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Reason {
     /// Below its live zero: a cut wire, a lost supply.
     Dead,
@@ -95,6 +98,7 @@ pub enum Reason {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Capability {
     /// Feel vibration, for S1.
     Vibration,
@@ -115,6 +119,7 @@ pub enum DriveSource {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Fault {
     SensorLost {
         channel: u8,
@@ -157,6 +162,7 @@ pub enum Fault {
 
 /// Reason for which the motor is not driven although a source asks for it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum MotorStop {
     ClosingStalled,
     /// At its stop, or the gear is jammed. A new opening command is tried again.
@@ -246,6 +252,7 @@ pub enum Line {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Kept {
     Network,
     Zero,

@@ -26,6 +26,7 @@ use crate::button::Button;
 use crate::config::Config;
 use crate::detectors::{Detectors, Said};
 use crate::feedback::Feedback;
+use crate::force::shear_mrad;
 use crate::grip::relax::Reading;
 use crate::grip::{Grip, Reflex};
 use crate::journal::Journal;
@@ -376,6 +377,7 @@ impl Fingertip {
             ticks,
             mode: self.mode,
             forces: self.senses.forces,
+            shear_mrad: shear_mrad(self.senses.forces.as_ref()),
             s2_permille: self.detectors.s2.s2_permille(&self.config.friction),
             flexor_mv: self.senses.gate.flexor_mv(),
             extensor_mv: self.senses.gate.extensor_mv(),

@@ -49,13 +49,14 @@ MV = 3300 / 16384
 
 
 def states(board: Iterable[messages.Up]) -> Columns:
-    """Mode, forces (N) and muscles (mV) of each slow frame, as columns: pandas.DataFrame takes them. None: there was none."""
-    columns: Columns = {name: [] for name in ("time_s", "mode", *_FORCES, "ratio", "s2", *_MUSCLES, "wearer_active")}
+    """Mode, forces (N), direction of the shear (rad from x towards y) and muscles (mV) of each slow frame, as columns: pandas.DataFrame takes them. None: there was none."""
+    columns: Columns = {name: [] for name in ("time_s", "mode", *_FORCES, "ratio", "shear_rad", "s2", *_MUSCLES, "wearer_active")}
     for slow in board:
         if slow.kind != "Slow":
             continue
         row: dict[str, Any] = {"time_s": _time_s(slow), "mode": slow.mode, "s2": slow.s2_permille / 1000, "wearer_active": slow.wearer_active}
         row.update({name: getattr(slow, name) for name in _MUSCLES})
+        row["shear_rad"] = None if slow.shear_mrad is None else slow.shear_mrad / 1000
         if slow.forces is not None:
             row.update({name: getattr(slow.forces, name[:-1] + "mn") / 1000 for name in _FORCES})
             ratio = slow.forces.ratio_permille

@@ -270,6 +270,7 @@ class Slow:
     ticks: List[Tick]
     mode: GripMode
     forces: Optional[Forces]
+    shear_mrad: Optional[int]
     s2_permille: int
     flexor_mv: Optional[int]
     extensor_mv: Optional[int]
@@ -550,6 +551,7 @@ class Up_Slow:
     ticks: List[Tick]
     mode: GripMode
     forces: Optional[Forces]
+    shear_mrad: Optional[int]
     s2_permille: int
     flexor_mv: Optional[int]
     extensor_mv: Optional[int]

@@ -70,6 +70,7 @@ pub fn margin(header: Header, slow: &Slow) -> Margin {
         margin: margin.map_or(0.0, newtons),
         ratio: slow.forces.and_then(|forces| forces.ratio_permille).map_or(0.0, permille),
         limit: permille(slow.s2_permille),
+        shear_angle: slow.shear_mrad.map_or(0.0, |mrad| f64::from(mrad) / 1e3),
     }
 }
 

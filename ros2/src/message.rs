@@ -152,6 +152,7 @@ pub struct Margin {
     pub margin: f64,
     pub ratio: f64,
     pub limit: f64,
+    pub shear_angle: f64,
 }
 
 impl Message for Margin {

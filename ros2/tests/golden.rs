@@ -42,7 +42,7 @@ fn type_hashes_are_the_published_ones() {
         (GripperCommand::NAME, "57eb8f326c9889ca8bb34ead82cc94cc09bf6bc5c3b6c09546dca3a00b589890"),
         (Tactile::NAME, "9433f7d572f1804ddb1c7d3709794607394a1bfbd1cba9b31d0551f2b551cdb2"),
         (Slip::NAME, "c15a97cc44f874dc30c13dadf9169353511ddb7c941ced2a41bbc72d496daa0c"),
-        (Margin::NAME, "6425fc04fc71b31eec7fda69ddd106bbec7c9a4067145a6249fa438c632cb135"),
+        (Margin::NAME, "1672a98bf9b50e1e49796b4dcc6a9dfa93ddaabfc2cf3a33bac08fae943ed763"),
     ];
     assert_eq!(published.len(), DEFINITIONS.len());
     for (name, expected) in published {
@@ -107,10 +107,11 @@ fn payloads_are_those_of_another_writer() {
         line_may_command: true,
     };
     both_ways(&slip, "0001000001f1536582b2e60e050000006c6566740003010504012c010001");
-    let margin = Margin { header: head(), valid: true, margin: 1.5, ratio: 0.21, limit: 0.3 };
+    let margin =
+        Margin { header: head(), valid: true, margin: 1.5, ratio: 0.21, limit: 0.3, shear_angle: 0.5 };
     both_ways(
         &margin,
-        "0001000001f1536582b2e60e050000006c6566740001000000000000000000000000f83fe17a14ae47e1ca3f333333333333d33f",
+        "0001000001f1536582b2e60e050000006c6566740001000000000000000000000000f83fe17a14ae47e1ca3f333333333333d33f000000000000e03f",
     );
 }
 

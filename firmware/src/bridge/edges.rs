@@ -4,14 +4,15 @@
 //! scan lasts 2.5 periods of the bridge, so every other one sees the edges 25 us later: modulo 25 us they keep their place. The falling
 //! edge's depends on the pulse of the side that is switched. So each pulse has a place of its own for the rising one, at which both come 0.86 us or more before the next
 //! end of a sampling, and 0.2 us or more after the last: the counter is moved when the pulse changes, by 5.4 us at most.
+//! Runs in control (2), interrupts off for some instructions. Owns nothing: moves TIM1's counter, reads TIM3's.
 
 use embassy_stm32::pac::{TIM1, TIM3};
 use tenax_hal_shim::channel::PVDF_COUNT;
 
-use super::PERIOD;
+use crate::timing::PWM_TICKS;
 
 /// Two scans see the edges this many ticks apart.
-const HALF: u32 = PERIOD as u32 / 2;
+const HALF: u32 = PWM_TICKS as u32 / 2;
 /// From the scans' trigger to the first film's end of sampling, 56 cycles at 25 MHz, and from one to the next, 12 more.
 const SAMPLED: u32 = 224;
 const RANK: u32 = 272;

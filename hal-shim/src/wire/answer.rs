@@ -9,6 +9,7 @@ use crate::channel::COUNT;
 use crate::words::{Fault, Kept};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Refusal {
     OutOfRange {
         min: i32,

@@ -48,6 +48,8 @@ pub struct Slow {
     pub ticks: [TickRecord; FRAMES_PER_SLOW_FRAME as usize],
     pub mode: GripMode,
     pub forces: Option<Forces>,
+    /// Direction of the shear, mrad from x towards y, -3142 to 3142 (Tada 2006: of the slip). None while there is no ratio.
+    pub shear_mrad: Option<i16>,
     pub s2_permille: u16,
     /// Envelopes above rest, mV. None while the sensor gives no number.
     pub flexor_mv: Option<i16>,

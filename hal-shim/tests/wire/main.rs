@@ -170,6 +170,7 @@ fn the_longest_message_fits_a_frame() {
         ticks: [longest; 25],
         mode: GripMode::Settle,
         forces: Some(forces),
+        shear_mrad: Some(i16::MIN),
         s2_permille: u16::MAX,
         flexor_mv: Some(i16::MIN),
         extensor_mv: Some(i16::MIN),

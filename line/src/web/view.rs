@@ -171,7 +171,7 @@ impl View {
 
     fn slow(&mut self, slow: &Slow) {
         let vibration = slow.ticks.iter().map(|tick| tick.vibration).max().unwrap_or(0);
-        // Time (s), largest vibration envelope (mV), Ft/Fn, S2 in force, load (N), flexor and extensor (mV).
+        // Time (s), largest vibration envelope (mV), Ft/Fn, S2 in force, load (N), flexor and extensor (mV), direction of the shear (rad).
         let point = json!([
             seconds(slow.frame),
             mv_from_sample(vibration),
@@ -180,6 +180,7 @@ impl View {
             slow.forces.map(|forces| f64::from(forces.load_mn) / 1e3),
             slow.flexor_mv,
             slow.extensor_mv,
+            slow.shear_mrad.map(|mrad| f64::from(mrad) / 1e3),
         ]);
         push(&mut self.points, HISTORY, point.clone());
         // Only a test injects slip.

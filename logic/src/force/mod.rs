@@ -8,8 +8,10 @@ pub mod friction;
 pub mod fsr;
 pub mod sensor;
 pub mod settings;
+mod shear;
 
 pub use ahead::Ahead;
 pub use asked::Asked;
 pub use friction::FrictionDetector;
 pub use sensor::ForceSensor;
+pub use shear::shear_mrad;

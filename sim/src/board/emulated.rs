@@ -68,6 +68,8 @@ pub enum Mishap {
     /// The converter's DMA stream switches off: the converter overruns.
     DmaStalls,
     Garbage(Vec<u8>),
+    /// So many bytes of a million come down the line with a framing error.
+    LineErrs(u32),
     CoreHangs,
     /// The converter's DMA stream is sent where nothing is: its driver panics.
     DmaFails,

@@ -51,6 +51,23 @@ fn garbage_on_the_line_is_counted_and_moves_nothing() {
     assert_eq!((run.counters.overruns, run.counters.ticks_late), (0, 0));
 }
 
+/// embassy's receiver begins its ring anew after an error, with what was carried out before still in it.
+// Shows L5.
+#[test]
+fn a_line_that_errs_loses_commands_and_carries_none_out_twice() {
+    let mishaps = vec![(0.5, Mishap::LineErrs(20_000)), (1.0, Mishap::LineErrs(0))];
+    let pings = (0..240)
+        .fold(Swing::new(1.4).at_rest(), |plant, n| plant.sending(0.2 + 0.005 * f64::from(n), Down::Ping));
+    let run = run(pings, &Options { mishaps, ..Options::default() });
+    assert_eq!(run.starts, [None]);
+    let answered: Vec<u16> = run.answers.iter().map(|(of, _)| *of).collect();
+    assert!(answered.is_sorted_by(|one, next| one < next), "{answered:?}");
+    assert!((180..240).contains(&answered.len()), "{} of 240", answered.len());
+    assert!(answered.ends_with(&(170..240).collect::<Vec<u16>>()), "{answered:?}");
+    assert!(run.counters.bad_frames > 0);
+    assert_eq!((run.counters.ticks_late, run.counters.frames_lost), (0, 0));
+}
+
 // Shows B1.
 #[test]
 fn a_hang_and_a_panic_stop_a_driven_motor_and_the_next_start_says_so() {

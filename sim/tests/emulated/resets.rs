@@ -1,5 +1,8 @@
 //! Resets by a lost clock and a low supply: each start says why, and the board goes on with what there is.
 
+use rand::SeedableRng;
+use rand::rngs::ChaCha8Rng;
+use rand::seq::SliceRandom;
 use tenax_hal_shim::wire::EventKind;
 use tenax_hal_shim::words::{Fault, Kept};
 use tenax_sim::board::emulated::{Mishap, Options};
@@ -63,6 +66,18 @@ fn a_wrong_brown_out_level_is_told_and_left_to_the_probe() {
 
 // Shows B2.
 #[test]
+fn without_a_brown_out_level_a_low_supply_is_waited_for_at_16_mhz() {
+    let run = |mishaps| {
+        let options = Options { brown_out_level: 3, supply_mv: 2_900, mishaps, ..Options::default() };
+        run(Swing::new(1.5).at_rest(), &options)
+    };
+    let low = run(Vec::new());
+    assert_eq!((low.starts.len(), low.line.len()), (0, 0), "its line needs a faster clock");
+    assert_eq!(run(vec![(0.5, Mishap::SupplyIs(3_300))]).starts, [Some(Fault::SupplySagged)]);
+}
+
+// Shows B2.
+#[test]
 fn a_hand_whose_supply_sags_slowly_at_each_closing_stays_off_in_the_end() {
     let sags = (0..6).map(|n| 0.2 + 0.7 * f64::from(n));
     let mishaps =
@@ -71,6 +86,39 @@ fn a_hand_whose_supply_sags_slowly_at_each_closing_stays_off_in_the_end() {
     let mut starts = vec![Some(Fault::SupplySagged); 7];
     (starts[0], starts[6]) = (None, Some(Fault::TooManyRestarts));
     assert_eq!(run(Swing::new(4.4).at_rest(), &options).starts, starts);
+}
+
+/// `host-tests/tests/restart.rs` draws thousands.
+// Shows B2.
+#[test]
+fn resets_in_a_drawn_order_are_each_told_right() {
+    let causes = [
+        (Mishap::CoreHangs, Fault::WatchdogReset),
+        (Mishap::DmaFails, Fault::PanicReset),
+        (Mishap::CoreStrays, Fault::PanicReset),
+        (Mishap::BrownsOut, Fault::SupplySagged),
+        (Mishap::SupplyIs(2_900), Fault::SupplySagged),
+        (Mishap::CrystalStops(true), Fault::CrystalLost),
+    ];
+    let mut random = ChaCha8Rng::seed_from_u64(52);
+    let (mut at_s, mut mishaps, mut starts) = (0.25, Vec::new(), vec![None]);
+    for _ in 0..3 {
+        let mut drawn = causes.clone();
+        drawn.shuffle(&mut random);
+        for (n, (mishap, fault)) in drawn.into_iter().enumerate() {
+            mishaps.extend([(at_s, mishap), (at_s + 0.15, Mishap::SupplyIs(3_300))]);
+            starts.push(Some(fault));
+            at_s += 0.4;
+            // Six restarts in a row would leave the hand off; the pin's is none.
+            if n % 3 == 2 {
+                mishaps.push((at_s, Mishap::ResetByPin));
+                starts.push(None);
+                at_s += 0.25;
+            }
+        }
+    }
+    let run = run(Swing::new(at_s).at_rest(), &Options { mishaps, ..Options::default() });
+    assert_eq!(run.starts, starts);
 }
 
 #[test]

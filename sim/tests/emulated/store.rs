@@ -1,7 +1,7 @@
 //! What the image keeps through resets and power cuts, and that keeping it costs no frame.
 
 use tenax_hal_shim::motor::MotorDrive;
-use tenax_hal_shim::wire::{Down, Event, EventKind, Setting};
+use tenax_hal_shim::wire::{Answer, Down, Event, EventKind, Setting};
 use tenax_hal_shim::words::{Fault, Kept};
 use tenax_logic::config::Config;
 use tenax_logic::setting::SettingId;
@@ -64,6 +64,31 @@ fn power_lost_in_the_middle_of_a_save_leaves_the_setting_before() {
     let run = run(plant(0.9), &Options { mishaps, ..start() });
     assert_eq!((run.starts.len(), s2_at_end(&run)), (2, Some(500)));
     assert_eq!((kept(&run), faults(&run)), (vec![Kept::Settings], vec![]));
+}
+
+// Shows B4.
+#[test]
+fn thirty_cuts_while_saving_leave_each_time_the_setting_before() {
+    let read = Down::Get(SettingId::S2.number());
+    let (mut plant, mut mishaps) = (Swing::new(9.6).at_rest(), Vec::new());
+    for n in 0..31 {
+        let at_s = 0.2 + 0.3 * f64::from(n);
+        plant = plant.sending(at_s, s2(300 + 5 * n)).sending(at_s + 0.25, read);
+        // The last has power for long enough.
+        let words = if n < 30 { u32::from(n * 5 % 7) } else { 40 };
+        mishaps.push((at_s - 0.05, Mishap::PowerFails(words)));
+    }
+    mishaps.push((9.3, Mishap::ResetByPin));
+    let start = at_start(&Sectors::blank().saving(Kept::Settings, &settings(295)));
+    let run = run(plant, &Options { mishaps, ..start });
+    assert_eq!(run.starts, [None; 32]);
+    let answers = run.answers.iter().filter(|(of, _)| of % 2 == 1).map(|(_, answer)| answer);
+    let value = |permille| Answer::Setting(Setting { id: SettingId::S2.number(), value: permille });
+    let mut expected = vec![value(295); 30];
+    expected.push(value(450));
+    assert!(answers.eq(&expected), "{:?}", run.answers);
+    assert_eq!((s2_at_end(&run), kept(&run)), (Some(450), vec![Kept::Settings]));
+    assert!(run.drives.iter().all(|drive| *drive == MotorDrive::Coast));
 }
 
 // Shows B7.

@@ -95,6 +95,7 @@ fn state(slow: &Slow) -> Row {
         ("fy_n", newtons(|forces| forces.fy_mn)),
         ("ft_n", newtons(|forces| forces.ft_mn)),
         ("ratio", maybe(slow.forces.and_then(|forces| forces.ratio_permille).map(thousandth))),
+        ("shear_rad", maybe(slow.shear_mrad.map(thousandth))),
         ("s2", Number(thousandth(slow.s2_permille))),
         ("margin_mn", maybe(slow.forces.and_then(|forces| forces.margin_mn(slow.s2_permille)))),
         ("flexor_mv", maybe(slow.flexor_mv)),

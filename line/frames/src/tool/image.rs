@@ -16,18 +16,21 @@ const NOT_FOR_THE_IMAGE: [&str; 5] = [
     "CARGO_MANIFEST_DIR",
 ];
 
-/// Builds the image of the workspace at `root`; its ELF file.
-///
-/// # Errors
-/// The compiler failed; its messages are on standard error.
+/// Builds the image of the workspace at `root`; its ELF file. `TENAX_CHIP`, such as `f412`, builds it for another chip, apart.
+/// Fails if the compiler does; its messages are on standard error.
 pub fn build(root: &Path) -> Result<PathBuf> {
     let mut cargo = Command::new("cargo");
     NOT_FOR_THE_IMAGE.iter().for_each(|name| _ = cargo.env_remove(name));
     cargo.current_dir(root).args(["build", "--quiet", "--package", PACKAGE, "--bin", PACKAGE]);
-    cargo.args(["--profile", PROFILE, "--target", TARGET]).arg("--target-dir").arg(target_dir(root));
+    let mut target_dir = target_dir(root);
+    if let Ok(chip) = std::env::var("TENAX_CHIP") {
+        cargo.args(["--no-default-features", "--features", &format!("log,chip-{chip}")]);
+        target_dir.push(chip);
+    }
+    cargo.args(["--profile", PROFILE, "--target", TARGET]).arg("--target-dir").arg(&target_dir);
     let status = cargo.status().context("cannot start cargo")?;
     ensure!(status.success(), "the image was not built; for its target: rustup target add {TARGET}");
-    Ok(target_dir(root).join(TARGET).join(PROFILE).join(PACKAGE))
+    Ok(target_dir.join(TARGET).join(PROFILE).join(PACKAGE))
 }
 
 fn target_dir(root: &Path) -> PathBuf {

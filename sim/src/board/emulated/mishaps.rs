@@ -1,5 +1,6 @@
 //! What can go wrong with a board, done to the emulated one.
 
+use rigless::chip::uart::Rate;
 use rigless::device::Level;
 use rigless::emulator::{Access, AccessKind, Host, InterruptLine, Stop};
 use rigless::session::Session;
@@ -8,7 +9,7 @@ use tenax_hal_shim::channel::SCAN_HZ;
 
 use super::Mishap;
 use super::flash::FlashArray;
-use super::nucleo::Nucleo;
+use super::nucleo::{Nucleo, USART2};
 use super::wires::{BRIDGE_FAULT, Wires};
 
 /// DMA2 (RM0383, section 9.5): flags of streams 0 to 3, where a written one clears them, stream 0's configuration and address.
@@ -118,6 +119,9 @@ impl Mishaps {
                     if let Some(line) = board.line() {
                         line.down.extend(bytes);
                     }
+                }
+                Mishap::LineErrs(per_million) => {
+                    board.chip.usart[USART2].errors_mut().framing = Rate { name: "framing", per_million };
                 }
                 Mishap::CoreHangs => host.hold(true),
                 Mishap::PowerFails(words) => flash.cut_power_after(words),

@@ -29,7 +29,7 @@ const OPTION_KEYS: [u64; 2] = [0x0819_2A3B, 0x4C5D_6E7F];
 const RCC_CIR: u64 = 0x4002_380C;
 const TIM3_CNT: u64 = 0x4000_0424;
 /// The serial port of the ST-LINK, USART2, in the order of the chip's ports.
-const USART2: usize = 1;
+pub const USART2: usize = 1;
 /// TIM3, in the order of the chip's general timers.
 const TIM3: usize = 1;
 
