@@ -136,8 +136,8 @@ fn signals_a_full_disk_and_a_lines_end_leave_whole_files_and_are_told() {
 
     // Its line ends for a moment, is back, and ends for good.
     let child =
-        record(&cut_after(&served.place, Duration::from_millis(1_000)), &at("end"), &["--seconds", "6"]);
-    thread::sleep(Duration::from_millis(4_500));
+        record(&cut_after(&served.place, Duration::from_millis(1_000)), &at("end"), &["--seconds", "12"]);
+    thread::sleep(Duration::from_millis(6_500));
     served.end();
     let done = child.wait_with_output().unwrap();
     let said = String::from_utf8_lossy(&done.stderr);
