@@ -14,11 +14,11 @@ use tenax_frames::link::board::chip_of;
 use tenax_frames::link::{Board, Target};
 use tenax_ros2::bridge::hand::{Hand, bridge};
 use tenax_ros2::bridge::network::{Place, open};
-use tenax_ros2::key::is_name;
+use tenax_ros2::key::{Domain, is_name};
 use zenoh::Wait;
 
 const EXAMPLES: &str = "\
-ROS 2 Jazzy or newer with rmw_zenoh (RMW_IMPLEMENTATION=rmw_zenoh_cpp), whose nodes meet at a router: start it with \
+ROS 2 Jazzy or newer, or Humble with --humble, with rmw_zenoh (RMW_IMPLEMENTATION=rmw_zenoh_cpp), whose nodes meet at a router: start it with \
 `ros2 run rmw_zenoh_cpp rmw_zenohd`, or let the bridge be the router (--router-here).
 
 Publishes, 80 times a second: /NAME/joint_states (position: gap; effort: grip force, N), /NAME/slip, /NAME/margin, \
@@ -58,6 +58,9 @@ struct Args {
     /// ROS 2's domain, 0 to 232 [default: ROS_DOMAIN_ID, or 0]
     #[arg(long, value_parser = clap::value_parser!(u32).range(0..=232))]
     domain: Option<u32>,
+    /// Speak to nodes of ROS 2 Humble, which hear nothing without it
+    #[arg(long)]
+    humble: bool,
 }
 
 fn main() -> ExitCode {
@@ -109,7 +112,7 @@ fn run(args: &Args) -> anyhow::Result<()> {
         moved.into_iter().for_each(|words| eprintln!("/{}: {words}", hand.name));
     }
     let set = || std::env::var("ROS_DOMAIN_ID").ok()?.parse().ok();
-    let domain = args.domain.or_else(set).unwrap_or(0);
+    let domain = Domain { number: args.domain.or_else(set).unwrap_or(0), humble: args.humble };
     let place = if args.router_here { Place::RouterHere } else { Place::At };
     let session = open(&place(args.router.clone()))?;
     let stop = Arc::new(AtomicBool::new(false));
@@ -119,7 +122,7 @@ fn run(args: &Args) -> anyhow::Result<()> {
     for Hand { name, board, .. } in &hands {
         eprintln!("/{name}: {}, chip {}", board.line, board.chip_words());
     }
-    eprintln!("in ROS 2's domain {} at {}; Ctrl-C ends it", domain, args.router);
+    eprintln!("in ROS 2's domain {} at {}; Ctrl-C ends it", domain.number, args.router);
     let run = &|(id, hand): (u32, &Hand)| {
         let ended = bridge(&session, domain, id, hand, &stop);
         // The session is all hands': none goes on without it.

@@ -4,7 +4,7 @@
 use proptest::prelude::*;
 use tenax_ros2::cdr;
 use tenax_ros2::describe::hash;
-use tenax_ros2::key::{self, Attachment, Node, Role, gid};
+use tenax_ros2::key::{self, Attachment, Domain, Node, Role, gid};
 use tenax_ros2::message::{
     DEFINITIONS, DiagnosticArray, DiagnosticStatus, GripperCommand, Header, JointState, KeyValue, Margin,
     Message, Slip, Tactile, Time, Word,
@@ -114,16 +114,21 @@ fn payloads_are_those_of_another_writer() {
 
 #[test]
 fn keys_and_tokens_are_rmw_zenohs() {
+    let jazzy = |number| Domain { number, humble: false };
     // As a ROS 2 node was heard to publish.
     let expected = "73/es_js_capture/sensor_msgs::msg::dds_::JointState_/\
                     RIHS01_a13ee3a330e346c9d87b5aa18d24e11690752bd33a0350f11c5882bc9179260e";
-    assert_eq!(key::topic::<JointState>(73, "/es_js_capture"), expected);
+    assert_eq!(key::topic::<JointState>(jazzy(73), "/es_js_capture"), expected);
     assert!(
-        key::topic::<Slip>(0, "/left/slip").starts_with("0/left/slip/tenax_msgs::msg::dds_::Slip_/RIHS01_")
+        key::topic::<Slip>(jazzy(0), "/left/slip")
+            .starts_with("0/left/slip/tenax_msgs::msg::dds_::Slip_/RIHS01_")
     );
+    let humble = Domain { number: 0, humble: true };
+    let expected = "0/left/slip/tenax_msgs::msg::dds_::Slip_/TypeHashNotSupported";
+    assert_eq!(key::topic::<Slip>(humble, "/left/slip"), expected);
     // The examples of rmw_zenoh's design, with another type.
     let session = "8b20917502ee955ac4476e0266340d5c".to_owned();
-    let node = Node { domain: 2, session, id: 0, name: "talker".to_owned() };
+    let node = Node { domain: jazzy(2), session, id: 0, name: "talker".to_owned() };
     assert_eq!(node.token(), "@ros2_lv/2/8b20917502ee955ac4476e0266340d5c/0/0/NN/%/%/talker");
     let expected = "@ros2_lv/2/8b20917502ee955ac4476e0266340d5c/0/10/MP/%/%/talker/%chatter/\
                     sensor_msgs::msg::dds_::JointState_/\

@@ -6,6 +6,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use crate::hand::{self, Grasp, Health, Object, Step, ceiling_mn, header};
+use crate::key::Domain;
 use crate::message::{DiagnosticArray, GripperCommand, JointState, Margin, Slip, Tactile, Word};
 use tenax_frames::link::{Board, Client};
 use tenax_hal_shim::channel::SLOW_HZ;
@@ -40,7 +41,13 @@ struct Topics<'a> {
 }
 
 /// Bridges a hand until `stop`, or the session is closed. A line that ends is opened again, wherever the board is plugged in then.
-pub fn bridge(session: &Session, domain: u32, id: u32, hand: &Hand, stop: &AtomicBool) -> anyhow::Result<()> {
+pub fn bridge(
+    session: &Session,
+    domain: Domain,
+    id: u32,
+    hand: &Hand,
+    stop: &AtomicBool,
+) -> anyhow::Result<()> {
     let name = &hand.name;
     let mut graph = Graph::new(session, domain, id, &format!("tenax_{name}"))?;
     let mut topics = Topics {

@@ -12,11 +12,12 @@ use common::Served;
 use tenax_frames::link::Board;
 use tenax_ros2::bridge::hand::{Hand, bridge};
 use tenax_ros2::bridge::network::{Place, open};
-use tenax_ros2::key::{Attachment, topic};
+use tenax_ros2::key::{Attachment, Domain, topic};
 use tenax_ros2::message::{DiagnosticArray, GripperCommand, JointState, Message, Slip, Word};
 use tenax_ros2::{cdr, key};
 use zenoh::{Session, Wait};
 
+const DOMAIN: Domain = Domain { number: 7, humble: false };
 const WITHIN: Duration = Duration::from_secs(10);
 
 /// A gripper that touches nothing: at its start the board consents.
@@ -29,7 +30,7 @@ struct Ros<'a> {
 impl Ros<'_> {
     fn hear<M: Message + Send + 'static>(&self, name: &str) -> Receiver<(M, Attachment)> {
         let (told, hears) = channel();
-        let declared = self.session.declare_subscriber(topic::<M>(7, name)).callback(move |sample| {
+        let declared = self.session.declare_subscriber(topic::<M>(DOMAIN, name)).callback(move |sample| {
             let message = cdr::message::<M>(&sample.payload().to_bytes()).expect("it decodes");
             let attached = sample.attachment().expect("rmw_zenoh drops what has none").to_bytes();
             let attached: [u8; 33] = attached[..].try_into().expect("33 bytes");
@@ -43,7 +44,7 @@ impl Ros<'_> {
 
     fn grip(&self, position: f64, max_effort: f64) {
         let payload = cdr::payload(&GripperCommand { position, max_effort }).unwrap();
-        self.session.put(topic::<GripperCommand>(7, "/left/gripper_command"), payload).wait().unwrap();
+        self.session.put(topic::<GripperCommand>(DOMAIN, "/left/gripper_command"), payload).wait().unwrap();
     }
 }
 
@@ -58,7 +59,7 @@ fn with(scene: &str, ask: impl FnOnce(&Ros)) {
     let hand = Hand { name: "left".to_owned(), board, range_m: 0.1 };
     let stop = AtomicBool::new(false);
     thread::scope(|scope| {
-        let bridging = scope.spawn(|| bridge(&own, 7, 0, &hand, &stop));
+        let bridging = scope.spawn(|| bridge(&own, DOMAIN, 0, &hand, &stop));
         let asked = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| ask(&Ros { session: &others })));
         stop.store(true, Ordering::Relaxed);
         bridging.join().unwrap().unwrap();
