@@ -89,7 +89,7 @@ pub enum Reason {
     NoContact,
     /// A myosensor's envelope stands still and mains is in it.
     Hum,
-    /// Drift of a myosensor's envelope, or of a force sensor's quadrant against the other three.
+    /// Drift of a myosensor's envelope, or of a force sensor's quadrants: one against the others, or all upwards.
     Creep,
     /// A myosensor's envelope stands still, which no muscle's does.
     Flat,

@@ -9,7 +9,7 @@ use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::front_end::MYO_REST_MV;
 use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::wire::{Down, EventKind};
-use tenax_hal_shim::words::{Cause, GripMode};
+use tenax_hal_shim::words::{Cause, Fault, GripMode};
 use tenax_host_tests::teaching::SLIP_MV;
 use tenax_host_tests::{Bench, closes, closing_frames, opens, rests};
 use tenax_logic::config::Config;
@@ -324,12 +324,29 @@ fn a_lost_myosensor_renews_no_budget() {
 
 // Shows R6.
 #[test]
-fn a_quadrant_pressed_at_boot_closes_nothing_until_it_was_seen_unloaded() {
-    let mut bench = Bench::new(8);
-    bench.pins_mv[FSR] += 400.0;
-    assert!(rests(&bench.run(4_000)));
-    bench.load(0.0, 0.0);
-    bench.run(100);
-    bench.load(4.0, 2.0);
-    assert!(closes(&bench.run(400)), "S2 is back");
+fn a_load_at_power_up_is_told_stays_a_load_and_closes_nothing_until_it_is_gone() {
+    // One quadrant, and weights of 2 N and 0.24 N on all.
+    for newtons in [[2.0, 0.0, 0.0, 0.0], [0.5; 4], [0.06; 4]] {
+        let mut bench = Bench::new(8);
+        bench.load_quadrants(newtons);
+        let told = |bench: &Bench, channel| {
+            bench.count(EventKind::Fault(Fault::PressedAtBoot { channel: channel as u8 }))
+        };
+        assert!(rests(&bench.run(4_000)));
+        for (n, newtons) in newtons.into_iter().enumerate() {
+            assert_eq!(told(&bench, FSR + n), usize::from(newtons > 0.0), "{newtons} N");
+        }
+        // The wearer opens the hand: its finger is still loaded.
+        bench.muscles(0.0, 600.0);
+        bench.run(4_000);
+        bench.muscles(0.0, 0.0);
+        bench.run(4_000);
+        let load_mn = bench.slows.last().unwrap().forces.unwrap().load_mn;
+        let total_mn = 1e3 * newtons.iter().sum::<f64>();
+        assert!((f64::from(load_mn) - total_mn).abs() < 0.1 * total_mn, "{load_mn} mN of {total_mn}");
+        bench.load(0.0, 0.0);
+        bench.run(100);
+        bench.load(4.0, 2.0);
+        assert!(closes(&bench.run(400)), "S2 is back");
+    }
 }

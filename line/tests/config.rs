@@ -1,13 +1,12 @@
 //! `tenax config` against a served board: every setting is set, read back, exported, imported and reset.
 
-use std::io::{self, Read, Write};
-use std::net::{Shutdown, TcpListener, TcpStream};
+use std::io::{Read, Write};
 use std::thread;
 
 use tenax_frames::link::Client;
 use tenax_logic::setting::SettingId;
 
-use crate::serving::{busy, tenax, trusting};
+use crate::serving::{busy, relay, tenax, trusting};
 
 #[test]
 fn every_setting_is_set_read_back_exported_imported_and_reset() {
@@ -92,21 +91,13 @@ fn an_import_is_all_or_nothing_and_two_clients_get_their_own_answers() {
 
 /// A line to the place that ends after so many commands.
 fn ends_after(place: &str, commands: usize) -> String {
-    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
-    let (own, place) = (listener.local_addr().unwrap(), place.trim_start_matches("tcp:").to_owned());
-    thread::spawn(move || {
-        let mut near = listener.accept().unwrap().0;
-        let mut far = TcpStream::connect(place).unwrap();
-        let (mut up, mut out) = (far.try_clone().unwrap(), near.try_clone().unwrap());
-        thread::spawn(move || io::copy(&mut up, &mut out));
+    relay(place, move |mut near, mut far| {
         let (mut byte, mut left) = ([0], commands);
         while left > 0 && near.read(&mut byte).unwrap_or(0) == 1 {
             far.write_all(&byte).unwrap();
             left -= usize::from(byte == [0]);
         }
-        near.shutdown(Shutdown::Both).unwrap();
-    });
-    format!("tcp:{own}")
+    })
 }
 
 #[test]

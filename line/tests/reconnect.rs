@@ -2,14 +2,18 @@
 //! A program of its own: what another test starts would inherit the pseudo-terminals and pass for their holder.
 #![cfg(unix)]
 
-use std::io::Write;
+use std::io::{Read, Write};
+use std::sync::Mutex;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread;
 use std::time::{Duration, Instant};
 
 use crc::{CRC_32_ISO_HDLC, Crc};
 use serialport::{SerialPort, TTYPort};
-use tenax_hal_shim::wire::{Counters, Down, FRAME_MAX, Up, VERSION, encode};
+use tenax_frames::link::{Board, Client};
+use tenax_hal_shim::wire::{
+    About, Answer, Counters, Down, FRAME_MAX, Identity, Receiver as Frames, Up, VERSION, encode,
+};
 use tenax_line::web::source::{News, start};
 use tenax_line::web::view::View;
 
@@ -99,4 +103,60 @@ fn a_board_that_is_unplugged_and_plugged_in_again_or_speaks_another_version_is_w
     let (mut board, _port) = plug();
     watch.until("back", |view| text(view, "gone").is_none());
     say(&mut board, &mut watch);
+}
+
+/// A board that says its chip, and its port.
+fn board_of(chip: u32) -> String {
+    let (mut board, port) = TTYPort::pair().expect("this machine has ptys");
+    let place = port.name().expect("a pty has a name");
+    board.set_timeout(WITHIN).unwrap();
+    thread::spawn(move || {
+        // Held, so that the pty stays when a client leaves.
+        let _port = port;
+        let (mut frames, mut byte) = (Frames::default(), [0]);
+        while board.read(&mut byte).is_ok() {
+            let Some(Ok(heard)) = frames.push::<Down>(byte[0]) else { continue };
+            let identity = Identity { chip: [chip; 3], ..Identity::default() };
+            let answer = Answer::About(About { identity, ..About::default() });
+            let answer = Up::Answer { of: heard.sequence, frame: 0, answer };
+            board.write_all(encode(0, &answer, &mut [0; FRAME_MAX]).unwrap()).unwrap();
+        }
+    });
+    place
+}
+
+/// Ports that are plugged in.
+static PORTS: Mutex<Vec<String>> = Mutex::new(Vec::new());
+
+#[test]
+fn a_board_is_its_chip_wherever_it_is_plugged_in() {
+    let folder = tempfile::tempdir().unwrap();
+    let [near, far] = ["near", "far"].map(|name| folder.path().join(name));
+    let plug = |boards: [&str; 2]| {
+        for (port, board) in [&near, &far].into_iter().zip(boards) {
+            let _none = std::fs::remove_file(port);
+            std::os::unix::fs::symlink(board, port).unwrap();
+        }
+    };
+    let (left, right) = (board_of(1), board_of(2));
+    plug([&left, &right]);
+    let place = near.to_str().unwrap();
+    *PORTS.lock().unwrap() = vec![place.to_owned(), far.to_str().unwrap().to_owned()];
+    let mut board = Board { ports: || PORTS.lock().unwrap().clone(), ..Board::at(place.parse().unwrap()) };
+    let opened =
+        |board: &mut Board| board.open().map(|(client, moved): (Client, _)| (client.can_send(), moved));
+    assert_eq!(opened(&mut board).unwrap(), (true, None));
+    assert_eq!(board.chip, Some([1; 3]));
+    // The plugs are swapped.
+    plug([&right, &left]);
+    let (_, moved) = opened(&mut board).unwrap();
+    let words = format!("chip 000000010000000100000001 was at {place}, and is at {} now", far.display());
+    assert_eq!((moved, board.line.to_string()), (Some(words), far.display().to_string()));
+    // Another board is in its place, and it is nowhere.
+    plug([&right, &right]);
+    let error = opened(&mut board).unwrap_err().to_string();
+    assert!(
+        error.ends_with("is chip 000000020000000200000002, and not chip 000000010000000100000001"),
+        "{error}"
+    );
 }

@@ -1,5 +1,7 @@
 //! A scene on the host's board whose line is served, and the tool as a person starts it.
 
+use std::io;
+use std::net::{Shutdown, TcpListener, TcpStream};
 use std::process::{Command, Output};
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard};
@@ -35,6 +37,25 @@ pub fn busy() -> RwLockWriteGuard<'static, ()> {
 /// Held by a test that a busy machine would fail: consent ends 10 s after a board's start.
 pub fn calm() -> RwLockReadGuard<'static, ()> {
     LOAD.read().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// A line to the place. `pass` passes what one connection after the other sends on to the place; then that connection is cut.
+pub fn relay(place: &str, mut pass: impl FnMut(TcpStream, TcpStream) + Send + 'static) -> String {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let (own, place) = (listener.local_addr().unwrap(), place.trim_start_matches("tcp:").to_owned());
+    thread::spawn(move || {
+        for near in listener.incoming() {
+            let (near, Ok(far)) = (near.unwrap(), TcpStream::connect(&place)) else { return };
+            let (mut up, mut out) = (far.try_clone().unwrap(), near.try_clone().unwrap());
+            thread::spawn(move || {
+                let _ended = io::copy(&mut up, &mut out);
+                out.shutdown(Shutdown::Both)
+            });
+            pass(near.try_clone().unwrap(), far);
+            let _gone = near.shutdown(Shutdown::Both);
+        }
+    });
+    format!("tcp:{own}")
 }
 
 /// The rig's scene on a board that trusts its line, so that nobody at the hand has to consent.

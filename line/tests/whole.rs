@@ -13,7 +13,7 @@ use tenax_frames::link::{Client, Inbox};
 use tenax_hal_shim::channel::FRAME_HZ;
 use tenax_hal_shim::wire::Up;
 
-use crate::serving::{BENCH, Serving, busy, command, tenax, trusting};
+use crate::serving::{BENCH, Serving, busy, command, relay, tenax, trusting};
 
 fn record(place: &str, path: &Path, more: &[&str]) -> Child {
     let args = [&["record", "--port", place, "--out", path.to_str().unwrap()], more].concat();
@@ -24,6 +24,21 @@ fn record(place: &str, path: &Path, more: &[&str]) -> Child {
         thread::sleep(Duration::from_millis(10));
     }
     child
+}
+
+/// A line to the place whose first connection ends after this time, and that is back 1.3 s later.
+fn cut_after(place: &str, lives: Duration) -> String {
+    let mut lives = Some(lives);
+    relay(place, move |mut up, mut far| match lives.take() {
+        Some(lives) => {
+            let near = up.try_clone().unwrap();
+            thread::spawn(move || std::io::copy(&mut up, &mut far));
+            thread::sleep(lives);
+            near.shutdown(std::net::Shutdown::Both).unwrap();
+            thread::sleep(Duration::from_millis(1_300));
+        }
+        None => _ = std::io::copy(&mut up, &mut far),
+    })
 }
 
 fn signal(child: &Child, name: &str) {
@@ -119,13 +134,20 @@ fn signals_a_full_disk_and_a_lines_end_leave_whole_files_and_are_told() {
     );
     assert!(began.elapsed() < Duration::from_secs(20) && last_frame(&full) > 0);
 
-    let child = record(&served.place, &at("end"), &["--seconds", "600"]);
-    thread::sleep(Duration::from_millis(700));
+    // Its line ends for a moment, is back, and ends for good.
+    let child =
+        record(&cut_after(&served.place, Duration::from_millis(1_000)), &at("end"), &["--seconds", "12"]);
+    thread::sleep(Duration::from_millis(6_500));
     served.end();
     let done = child.wait_with_output().unwrap();
     let said = String::from_utf8_lossy(&done.stderr);
-    assert!(done.status.code() == Some(2) && said.contains("the line ended after "), "{said}");
-    assert!(std::fs::read(at("end")).unwrap().ends_with(mcap_end()) && last_frame(&at("end")) > 0);
+    assert!(done.status.code() == Some(2) && said.matches("the line ended after ").count() == 3, "{said}");
+    assert!(std::fs::read(at("end")).unwrap().ends_with(mcap_end()));
+    let csv = folder.path().join("csv");
+    assert!(tenax(&["play", at("end").to_str().unwrap(), "--csv", csv.to_str().unwrap()]).0);
+    let events = std::fs::read_to_string(csv.join("event.csv")).unwrap();
+    assert!(events.contains("nothing came for "), "{events}");
+    assert!(f64::from(last_frame(&at("end"))) / f64::from(FRAME_HZ) > 3.0, "it goes on");
 }
 
 #[test]

@@ -50,7 +50,8 @@ const SILENT_LEVEL: u16 = 80;
 const OPEN_FRAMES: u32 = frames(600);
 /// Slow frames in which a surely open hand reads a load before that is reported: 4 s.
 const DOUBTED_AFTER: u16 = 4 * SLOW_HZ as u16;
-const PRESSED_UV: i32 = 100_000;
+/// Part of `loaded-mn` below which the finger is unloaded, whatever its quadrants share it by.
+const UNLOADED_PART: i32 = 4;
 static FSR_LIMITS: Limits = Limits::of(&CHANNELS[FSR], SLOW_HZ);
 
 #[derive(Clone, Debug, Default)]
@@ -63,7 +64,8 @@ pub struct Senses {
     fsr_missed: [u8; FSR_COUNT],
     fsr_seen: bool,
     pressed: bool,
-    blamed: Option<u8>,
+    /// Quadrants reported as drifting, one bit each.
+    doubted: u8,
     force_sensor: ForceSensor,
     detector: VibrationDetector,
     gauges: Gauges,
@@ -251,7 +253,7 @@ impl Senses {
         (self.grip, self.unloaded) = match self.forces {
             None => (Grip::Unknown, false),
             Some(forces) if forces.load_mn < loaded_mn => {
-                (Grip::Unloaded, !self.pressed && forces.load_mn < loaded_mn / 4)
+                (Grip::Unloaded, !self.pressed && forces.load_mn < loaded_mn / UNLOADED_PART)
             }
             Some(forces) => (Grip::Holds(forces.load_mn), false),
         };

@@ -1,10 +1,10 @@
 //! What a board's line says as ROS 2's messages, and a gripper command as the line's.
 
 use tenax_hal_shim::behaviour::Behaviour;
-use tenax_hal_shim::channel::{SLOW_HZ, mv_from_sample};
+use tenax_hal_shim::channel::{CHANNELS, OPENING, SLOW_HZ, mv_from_sample};
 use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::wire::{About, Counters, Down, Senses, Slow};
-use tenax_hal_shim::words::Line;
+use tenax_hal_shim::words::{DriveSource, Line};
 
 use crate::message::{
     DiagnosticArray, DiagnosticStatus, GripperCommand, Header, JointState, KeyValue, Margin, Slip, Tactile,
@@ -22,6 +22,11 @@ const OPENS_FOR: u32 = 2 * SLOW_HZ;
 const OPENS_ON_FOR: u32 = SLOW_HZ / 4;
 /// Load below which nothing is felt, mN.
 const NOTHING_MN: i32 = 300;
+/// Load from which something is held, mN, and slow frames for which a report of slip stands.
+const HELD_MN: i32 = 600;
+const SLIPS_FOR: u32 = SLOW_HZ / 4;
+/// Reading of the wholly open hand above that of the closed one, mV.
+const OPENING_SPAN_MV: f64 = 2_400.0;
 /// How hard it opens, and the least with which a motor moves, per mille.
 const OPEN_PERMILLE: u16 = 400;
 const CLOSE_PERMILLE_MIN: u16 = 150;
@@ -37,10 +42,55 @@ fn newtons(mn: i32) -> f64 {
     f64::from(mn) / 1e3
 }
 
-pub fn joint_state(header: Header, slow: &Slow) -> JointState {
+/// `range_m`: gap of the open hand.
+pub fn joint_state(header: Header, slow: &Slow, senses: Option<&Senses>, range_m: f64) -> JointState {
+    let position = senses.and_then(opening).map(|part| range_m * part).into_iter().collect();
     let effort = slow.forces.iter().map(|forces| newtons(forces.load_mn)).collect();
     let name = vec![format!("{}_grip", header.frame_id)];
-    JointState { header, name, effort, ..JointState::default() }
+    JointState { header, name, position, effort, ..JointState::default() }
+}
+
+/// Opening as a part of the hand's range, 0 to 1. None while its sensor gives no number.
+fn opening(senses: &Senses) -> Option<f64> {
+    let (mv, channel) = (mv_from_sample(senses.samples[OPENING]), &CHANNELS[OPENING]);
+    let part = (f64::from(mv) - f64::from(channel.rest_mv)) / OPENING_SPAN_MV;
+    (channel.low_mv..=channel.high_mv).contains(&mv).then_some(part.clamp(0.0, 1.0))
+}
+
+/// What became of the object, from slow frame to slow frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Object {
+    /// Slow frames since a report of slip, and whether the hand was opened since it held something.
+    quiet: u32,
+    opened: bool,
+    word: Option<&'static str>,
+}
+
+impl Object {
+    pub fn follow(&mut self, slow: &Slow) -> &'static str {
+        let opens = slow
+            .ticks
+            .iter()
+            .any(|tick| matches!(tick.drive, MotorDrive::Open(_)) && tick.source != DriveSource::Reflex);
+        let slips = slow.ticks.iter().any(|tick| tick.believed.bits() != 0);
+        self.step(slow.forces.map(|forces| forces.load_mn), slips, opens)
+    }
+
+    /// `held`, `slipping`, `lost` (the load fell to nothing, and nobody opened the hand) or `none`.
+    pub fn step(&mut self, load_mn: Option<i32>, slips: bool, opens: bool) -> &'static str {
+        self.quiet = if slips { 0 } else { self.quiet.saturating_add(1) };
+        let holds = matches!(self.word, Some("held" | "slipping"));
+        let word = match load_mn {
+            Some(HELD_MN..) if self.quiet < SLIPS_FOR => "slipping",
+            Some(HELD_MN..) => "held",
+            Some(..NOTHING_MN) if holds && (self.opened || opens) => "none",
+            Some(..NOTHING_MN) if holds => "lost",
+            _ => self.word.unwrap_or("none"),
+        };
+        self.opened = opens || self.opened && holds;
+        self.word = Some(word);
+        word
+    }
 }
 
 pub fn slip(header: Header, slow: &Slow) -> Slip {
@@ -95,6 +145,8 @@ pub fn ceiling_mn(about: &About) -> Option<i32> {
 pub struct Health {
     pub gone: Option<String>,
     pub command: String,
+    /// Where the board is plugged in.
+    pub line: String,
     pub about: Option<About>,
     pub counters: Option<Counters>,
     pub missed: u64,
@@ -132,6 +184,7 @@ impl Health {
             ("messages missed", self.missed.to_string()),
             ("bad frames", self.bad_frames.to_string()),
             ("control per mille", counters.control_permille.to_string()),
+            ("line", self.line.clone()),
         ];
         let chip = self.about.as_ref().map_or([0; 3], |about| about.identity.chip);
         let status = DiagnosticStatus {

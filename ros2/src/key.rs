@@ -6,9 +6,25 @@ use crate::message::Message;
 
 pub const GID: usize = 16;
 
+/// What rmw_zenoh of Humble writes in the place of a type's hash, which that has not.
+const NO_HASH: &str = "TypeHashNotSupported";
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Domain {
+    pub number: u32,
+    /// Of ROS 2 Humble; else of Jazzy or newer.
+    pub humble: bool,
+}
+
+impl Domain {
+    fn hash<M: Message>(self) -> String {
+        if self.humble { NO_HASH.to_owned() } else { M::type_hash() }
+    }
+}
+
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Node {
-    pub domain: u32,
+    pub domain: Domain,
     pub session: String,
     pub id: u32,
     pub name: String,
@@ -21,27 +37,27 @@ pub enum Role {
 }
 
 /// The key of a topic: `0/left/joint_states/sensor_msgs::msg::dds_::JointState_/RIHS01_...`.
-pub fn topic<M: Message>(domain: u32, name: &str) -> String {
-    format!("{domain}/{}/{}/{}", name.trim_matches('/'), M::dds_name(), M::type_hash())
+pub fn topic<M: Message>(domain: Domain, name: &str) -> String {
+    format!("{}/{}/{}/{}", domain.number, name.trim_matches('/'), M::dds_name(), domain.hash::<M>())
 }
 
 impl Node {
     pub fn token(&self) -> String {
-        let Self { domain, session, id, name } = self;
-        format!("@ros2_lv/{domain}/{session}/{id}/{id}/NN/%/%/{name}")
+        let Self { domain: Domain { number, .. }, session, id, name } = self;
+        format!("@ros2_lv/{number}/{session}/{id}/{id}/NN/%/%/{name}")
     }
 
     /// The token of one of its topics, `depth` messages of which are kept; the rest is rmw_zenoh's default: reliable, volatile.
     pub fn endpoint<M: Message>(&self, role: Role, entity: u32, topic: &str, depth: u32) -> String {
-        let Self { domain, session, id, name } = self;
+        let Self { domain: Domain { number, .. }, session, id, name } = self;
         let role = match role {
             Role::Publisher => "MP",
             Role::Subscription => "MS",
         };
         let topic = topic.replace('/', "%");
-        let (kind, hash) = (M::dds_name(), M::type_hash());
+        let (kind, hash) = (M::dds_name(), self.domain.hash::<M>());
         format!(
-            "@ros2_lv/{domain}/{session}/{id}/{entity}/{role}/%/%/{name}/{topic}/{kind}/{hash}/::,{depth}:,:,:,,"
+            "@ros2_lv/{number}/{session}/{id}/{entity}/{role}/%/%/{name}/{topic}/{kind}/{hash}/::,{depth}:,:,:,,"
         )
     }
 }

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::describe::{Definition, hash};
 
-pub const DEFINITIONS: [Definition; 10] = [
+pub const DEFINITIONS: [Definition; 11] = [
     Definition { name: "builtin_interfaces/msg/Time", text: "int32 sec\nuint32 nanosec" },
     Definition { name: "std_msgs/msg/Header", text: "builtin_interfaces/Time stamp\nstring frame_id" },
     Definition {
@@ -18,6 +18,7 @@ pub const DEFINITIONS: [Definition; 10] = [
         name: "diagnostic_msgs/msg/DiagnosticStatus",
         text: "byte level\nstring name\nstring message\nstring hardware_id\nKeyValue[] values",
     },
+    Definition { name: Word::NAME, text: "string data" },
     Definition { name: DiagnosticArray::NAME, text: "std_msgs/Header header\nDiagnosticStatus[] status" },
     Definition { name: Tactile::NAME, text: include_str!("../tenax_msgs/msg/Tactile.msg") },
     Definition { name: Slip::NAME, text: include_str!("../tenax_msgs/msg/Slip.msg") },
@@ -63,7 +64,7 @@ pub struct Header {
 pub struct JointState {
     pub header: Header,
     pub name: Vec<String>,
-    /// Empty: a fingertip's opening is calibrated to no length.
+    /// Gap, m; without `--range-m` as a part of the hand's range, 0 to 1. Empty while the opening gives no number.
     pub position: Vec<f64>,
     pub velocity: Vec<f64>,
     /// Grip force, N. Empty while the force sensor gives no number.
@@ -84,6 +85,15 @@ pub struct GripperCommand {
 
 impl Message for GripperCommand {
     const NAME: &'static str = "control_msgs/msg/GripperCommand";
+}
+
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Word {
+    pub data: String,
+}
+
+impl Message for Word {
+    const NAME: &'static str = "std_msgs/msg/String";
 }
 
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]

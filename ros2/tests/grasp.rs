@@ -3,7 +3,7 @@
 use tenax_hal_shim::behaviour::Behaviour;
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::{Counters, Down};
-use tenax_ros2::hand::{Grasp, Health, Step};
+use tenax_ros2::hand::{Grasp, Health, Object, Step};
 use tenax_ros2::message::GripperCommand;
 
 const CEILING_MN: Option<i32> = Some(20_000);
@@ -79,4 +79,19 @@ fn a_loss_is_warned_of_for_ten_seconds_and_counted_for_ever() {
     };
     let told = [level(0, 1), level(1, 2), level(1, 11), level(1, 13), level(2, 14)];
     assert_eq!(told.map(|(level, missed)| format!("{level} {missed}")), ["0 0", "1 1", "1 1", "0 1", "1 2"]);
+}
+
+#[test]
+fn an_object_is_held_slips_and_is_lost_unless_somebody_opens_the_hand() {
+    let mut object = Object::default();
+    let mut told = |load_mn, slips, opens| object.step(load_mn, slips, opens);
+    assert_eq!(told(Some(400), true, false), "none");
+    assert_eq!(told(Some(2_000), false, false), "slipping", "a quarter of a second");
+    let later: Vec<_> = (0..40).map(|_| told(Some(2_000), false, false)).collect();
+    assert_eq!(later.last(), Some(&"held"));
+    assert_eq!([told(Some(2_000), true, false), told(None, false, false)], ["slipping"; 2], "no number");
+    assert_eq!([told(Some(400), false, false), told(Some(100), false, false)], ["slipping", "lost"]);
+    assert_eq!([told(Some(100), false, false), told(Some(400), false, false)], ["lost"; 2]);
+    (0..40).for_each(|_| _ = told(Some(700), false, false));
+    assert_eq!([told(Some(500), false, true), told(Some(100), false, false)], ["held", "none"], "put down");
 }

@@ -4,7 +4,7 @@ use std::f32::consts::PI;
 
 use crate::force::{Forces, MIDDLE};
 use crate::frame::{Frame, HEIGHT, PIXELS, Plane, WIDTH, plane};
-use crate::markers::{Calibration, Marker, Markers};
+use crate::markers::{Calibration, FRAMES, Marker, Markers};
 use crate::mask::Mask;
 use crate::motion::{self, ARM_PX, Flow};
 use crate::object::{Sighting, Tracker};
@@ -13,6 +13,12 @@ use crate::rectify::Rectifier;
 use crate::skin::Skin;
 
 const MARKERS_MIN: usize = 4;
+/// Pictures within which a calibration that finds more markers, by a quarter, shows that the first pictures were bad.
+const BEGINNING: u32 = 8 * FRAMES;
+/// Time over which the speed of a slip is taken, ms.
+const SPEED_MS: u32 = 33;
+/// Time in which what has moved still counts as moving, ms.
+const MOVING_MS: f32 = 133.0;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Summary {
@@ -27,6 +33,10 @@ pub struct Summary {
     /// Move of the skin under the object.
     pub skin_flow: Option<Flow>,
     pub background_flow: Option<Flow>,
+    /// Speed of the object against the skin under it. None where that cannot be seen.
+    pub slip_px_s: Option<f32>,
+    /// Time since the picture before, s.
+    pub elapsed_s: f32,
 }
 
 #[derive(Clone, Debug)]
@@ -39,6 +49,8 @@ pub struct Camera {
     watch: Watch,
     skin: Skin,
     heading: Heading,
+    slip_px_s: Option<f32>,
+    last_ms: u32,
     frames: u32,
 }
 
@@ -82,6 +94,8 @@ impl Default for Camera {
             watch: Watch::default(),
             skin: Skin::default(),
             heading: Heading::default(),
+            slip_px_s: None,
+            last_ms: 0,
             frames: 0,
         }
     }
@@ -105,14 +119,13 @@ impl Camera {
     pub fn picture(&mut self, frame: &Frame, learn: bool, taken_ms: u32, now_ms: u32) -> Summary {
         std::mem::swap(&mut self.grey, &mut self.before);
         frame.grey(&mut self.grey);
-        match &mut self.markers {
-            Some(markers) => markers.follow(&self.grey),
-            None => {
-                if self.calibration.frame(&self.grey) {
-                    self.markers = Some(Markers::new(&self.calibration));
-                }
-            }
+        if let Some(markers) = &mut self.markers {
+            markers.follow(&self.grey);
         }
+        self.calibrate(learn);
+        let elapsed_ms = if self.frames == 0 { SPEED_MS } else { taken_ms.wrapping_sub(self.last_ms).max(1) };
+        self.last_ms = taken_ms;
+        self.object.pace(libm::roundf(libm::log2f(MOVING_MS / elapsed_ms as f32)));
         let markers: &[_] = self.markers.as_deref().unwrap_or_default();
         let found = markers.iter().filter(|marker| marker.found.is_ok()).count();
         let blind = self.watch.picture(&self.grey, (found, markers.len()), taken_ms, now_ms);
@@ -140,6 +153,11 @@ impl Camera {
             let turned = flow.map(|flow: Flow| flow.turn / ARM_PX);
             object.angle_rad = self.heading.follow(object, turned).unwrap_or(object.angle_rad);
         }
+        self.slip_px_s = flow.map(|flow| {
+            let now = 1e3 * flow.slip_on(skin_flow.unwrap_or_default()) / elapsed_ms as f32;
+            let part = elapsed_ms.min(SPEED_MS) as f32 / SPEED_MS as f32;
+            self.slip_px_s.map_or(now, |before| before + part * (now - before))
+        });
         self.skin.remember(markers);
         let number = self.frames;
         self.frames = self.frames.wrapping_add(1);
@@ -152,6 +170,26 @@ impl Camera {
             flow,
             skin_flow,
             background_flow,
+            slip_px_s: self.slip_px_s,
+            elapsed_s: elapsed_ms as f32 / 1e3,
+        }
+    }
+
+    /// Looks for the markers, and once more while the hand is open: then everything begins anew if it finds more.
+    fn calibrate(&mut self, learn: bool) {
+        let again = learn && self.frames < BEGINNING;
+        if !(self.markers.is_none() || again) || !self.calibration.frame(&self.grey) {
+            return;
+        }
+        let found = Markers::new(&std::mem::take(&mut self.calibration));
+        let Some(own) = &self.markers else {
+            self.markers = Some(found);
+            return;
+        };
+        if 4 * found.len() > 5 * own.len() {
+            self.markers = Some(found);
+            self.object.begin_anew();
+            self.skin = Skin::default();
         }
     }
 
@@ -182,22 +220,17 @@ fn skin_of(markers: &[Marker]) -> Mask {
 
 /// Moving pixels, of the picture, from which an object slips whose own move cannot be seen: it is too plain.
 pub const SLIP_MIN: f32 = 0.001;
-/// Speed of an object against the skin under it from which it slips, px a frame.
-pub const SLIP_MIN_PX: f32 = 0.25;
-pub const HAND_FLOW_MIN_PX: f32 = 0.1;
+/// Speed of an object against the skin under it from which it slips, px/s, and of the background from which the hand moves.
+pub const SLIP_MIN_PX_S: f32 = 7.5;
+pub const HAND_MIN_PX_S: f32 = 3.0;
 
 impl Summary {
     pub fn slips(&self) -> bool {
         let Some(object) = self.object.filter(|_| self.blind.is_none()) else { return false };
-        match self.slip_px() {
-            Some(px) => px >= SLIP_MIN_PX,
+        match self.slip_px_s {
+            Some(speed) => speed >= SLIP_MIN_PX_S,
             None => object.slip_px as f32 >= SLIP_MIN * PIXELS as f32,
         }
-    }
-
-    /// Speed of the object against the skin under it, px a picture. None where that cannot be seen.
-    pub fn slip_px(&self) -> Option<f32> {
-        self.flow.map(|flow| flow.slip_on(self.skin_flow.unwrap_or_default()))
     }
 
     /// The teacher's words (Tada 2006, equations 1 and 2). v1: -1 if the object moves against the hand, 1 if both move as
@@ -206,7 +239,7 @@ impl Summary {
     pub fn codes(&self) -> Option<(i8, i8)> {
         self.object.filter(|_| self.blind.is_none())?;
         let y = self.background_flow.map_or(0.0, |flow| flow.y);
-        let hand = if y.abs() < HAND_FLOW_MIN_PX { 0 } else { y.signum() as i8 };
+        let hand = if y.abs() < HAND_MIN_PX_S * self.elapsed_s { 0 } else { y.signum() as i8 };
         Some((if self.slips() { -1 } else { hand.abs() }, hand))
     }
 }

@@ -6,7 +6,7 @@ mod window;
 
 use crate::frame::{Plane, Point};
 
-pub use self::calibration::Calibration;
+pub use self::calibration::{Calibration, FRAMES};
 pub use self::outline::RAYS;
 use self::outline::{Fit, Outline};
 use self::window::{SIDE, Window};

@@ -93,6 +93,16 @@ impl Tracker {
         self.lens = Some(lens);
     }
 
+    /// Forgets scene and object, as if the next frame were the first.
+    pub fn begin_anew(&mut self) {
+        *self = Self { lens: self.lens.take(), ..Self::default() };
+    }
+
+    /// `octaves`: what moved counts as moving for 2^`octaves` frames.
+    pub fn pace(&mut self, octaves: f32) {
+        self.movement.rate = octaves.clamp(0.0, 5.0) as u32;
+    }
+
     pub const fn object(&self) -> &Mask {
         &self.object
     }

@@ -1,7 +1,8 @@
 //! Markers that are drawn where the test says, moved, covered and imitated.
 
 use crate::common::{Noise, draw_discs, plane};
-use tenax_vision::frame::Plane;
+use tenax_vision::Camera;
+use tenax_vision::frame::{Frame, PIXELS, Plane};
 use tenax_vision::markers::{Calibration, Failure, Markers};
 
 fn discs(shift: impl Fn(f32, f32) -> (f32, f32)) -> Vec<(f32, f32, f32)> {
@@ -163,4 +164,24 @@ fn what_moves_or_is_not_round_is_no_marker() {
     };
     assert!(!has(8) && !has(20) && has(9), "{} markers", markers.len());
     assert_eq!(markers.len(), 33);
+}
+
+#[test]
+fn grey_first_pictures_cost_no_marker_and_invent_no_object() {
+    for greys in [0, 1, 15] {
+        let (mut noise, mut grey, mut camera) = (Noise(9), plane(0), Camera::default());
+        let mut seen = Vec::new();
+        for number in 0..100_u32 {
+            draw_discs(&discs(still), stripes(0.0), 2.0, &mut noise, &mut grey);
+            if number < greys {
+                grey[100 * 320..].fill(128);
+            }
+            let planes = [&grey[..]; 3].concat();
+            let frame = Frame::from_gbrp(&planes).unwrap();
+            let summary = camera.picture(&frame, true, 33 * number, 33 * number);
+            seen.push((summary.markers, summary.object.is_some()));
+        }
+        assert_eq!(PIXELS, 320 * 240);
+        assert!(seen[60..].iter().all(|&own| own == (35, false)), "{greys} grey: {seen:?}");
+    }
 }

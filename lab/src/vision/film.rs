@@ -192,7 +192,7 @@ impl Tables {
             writer.write_record(header.split(','))?;
             Ok(writer)
         };
-        let object = "frame,area,x,y,angle_rad,cut,slip_px,moving_px,slips,flow_x,flow_y,shear_x_px,shear_y_px,normal_px,twist_px2,blind";
+        let object = "frame,area,x,y,angle_rad,cut,slip_px_s,moving_px,slips,flow_x,flow_y,shear_x_px,shear_y_px,normal_px,twist_px2,blind";
         Ok(Self {
             markers: create("markers.csv", "frame,marker,x,y,radius,dx,dy,growth,known,failure")?,
             object: create("object.csv", object)?,
@@ -216,7 +216,7 @@ impl Tables {
             object.map(|own| own.moments.middle.y),
             object.map(|own| own.angle_rad),
             object.map(|own| u8::from(own.cut)),
-            object.map_or(0, |own| own.slip_px),
+            summary.slip_px_s,
             camera.object().moving().count(),
             u8::from(summary.slips()),
             flow.map(|own| own.x),

@@ -198,3 +198,35 @@ fn judge(
 fn wrapped(off: f64, turn: f64) -> f64 {
     off - turn * (off / turn).round()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Mean speed of the slips of a drawn session, px/s: as it is seen, and the true one.
+    fn speeds(seed: u64, rate_hz: f64) -> [f64; 2] {
+        let mut session = Session::new(Options { seed, rate_hz, fisheye: true });
+        let (mut camera, mut planes) = (Camera::default(), vec![0; FRAME_BYTES]);
+        let (mut before, mut seen, mut drawn) = (None::<State>, Mean::default(), Mean::default());
+        while let Some(truth) = session.picture(&mut planes) {
+            let now_ms = (truth.t_s * 1e3) as u32;
+            let frame = Frame::from_gbrp(&planes).unwrap();
+            let summary = camera.picture(&frame, !truth.gripped, now_ms, now_ms);
+            let speed = before.map_or(0.0, |before| moved(&before, &truth.state)) * rate_hz;
+            before = Some(truth.state);
+            if let Some(px_s) = summary.slip_px_s.filter(|_| truth.gripped && speed > 9.0) {
+                seen.add(px_s.into());
+                drawn.add(speed);
+            }
+        }
+        [seen, drawn].map(|mean| mean.value().unwrap())
+    }
+
+    #[test]
+    fn the_speed_of_a_slip_is_the_same_at_any_rate_of_pictures() {
+        for rate_hz in [15.0, 60.0] {
+            let [seen, drawn] = speeds(1, rate_hz);
+            assert!((seen / drawn - 1.0).abs() < 0.1, "{rate_hz} Hz: {seen} px/s of {drawn}");
+        }
+    }
+}

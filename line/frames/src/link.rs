@@ -2,6 +2,7 @@
 //!
 //! [`Target`] opens it; [`Inbox`] receives messages, [`Outbox`] sends commands, and [`Client`] does both.
 
+pub mod board;
 pub mod captured;
 mod client;
 mod clock;
@@ -9,6 +10,7 @@ mod inbox;
 mod outbox;
 mod target;
 
+pub use board::Board;
 pub use captured::Captured;
 pub use client::{ANSWER_WITHIN, Client, is_silence};
 pub use clock::Clock;

@@ -3,19 +3,21 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::atomic::Ordering::Relaxed;
+use std::thread;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, bail};
 use tenax_hal_shim::wire::{Answer, Down, Setting, Up};
 use tenax_logic::setting::SettingId;
 
-use super::port::Line;
-use tenax_frames::link::{ANSWER_WITHIN, Client};
+use super::port::{self, Line};
+use tenax_frames::link::{ANSWER_WITHIN, Board, Client};
 use tenax_frames::record::{self, Recording};
 use tenax_frames::tool::progress::Progress;
 use tenax_frames::tool::{out, stop};
 use tenax_frames::words::seconds;
 
+const AGAIN_AFTER: Duration = Duration::from_millis(300);
 /// Settings are saved every 3 s at most.
 const SAVED_WITHIN: Duration = Duration::from_secs(4);
 
@@ -43,15 +45,15 @@ Examples:
   tenax plot walk.mcap                         draws it
   tenax record --from-start --out whole.mcap   from the board's reset on, for `tenax run --replay`";
 
-/// Records until the time is over or a signal comes. Fails if the line ends before: what came is recorded.
+/// Records until the time is over or a signal comes, and goes on when a line that ended is back. Fails if it is not back by then:
+/// what came is recorded.
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
-    let mut client = args.line.open()?;
+    let mut board = Board::at(port::or_found(args.line.port.as_ref())?);
+    let (mut client, _) = board.open()?;
     let path = args.out.clone().unwrap_or_else(record::name_now);
     let mut recording = Recording::create(&path)?;
     if args.from_start {
         stream_at_start(&mut client)?;
-    } else if client.can_send() {
-        client.send(&Down::About)?;
     }
     let stopped = stop::on_signals()?;
     let status = Progress::new("record", 1.0);
@@ -86,7 +88,21 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
                 recording.take(&heard.received)?;
             }
             Ok(None) => {}
-            Err(error) => end = Some(error),
+            Err(error) if !client.can_send() => end = Some(error),
+            Err(error) => {
+                let (lost, after_s) = (Instant::now(), began.elapsed().as_secs_f64());
+                status.clear();
+                out::note!("the line ended after {after_s:.1} s, unasked ({error}): waiting for the board");
+                match again(&mut board, || !stopped.load(Relaxed) && !is_over(began)) {
+                    None => end = Some(error),
+                    Some((again, moved)) => {
+                        out::note!("it is back after {:.1} s", lost.elapsed().as_secs_f64());
+                        moved.into_iter().for_each(|words| out::note!("{words}"));
+                        let before = std::mem::replace(&mut client, again).counts();
+                        client.count_on(before);
+                    }
+                }
+            }
         }
         recording.keep()?;
         status.say(|_| client.counts().to_string());
@@ -99,6 +115,17 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         None => Ok(ExitCode::SUCCESS),
         Some(end) => bail!("the line ended after {:.1} s, unasked ({end})", began.elapsed().as_secs_f64()),
     }
+}
+
+/// Opens the board's line once it is back, and says where it has moved. None if it is not back while one `waits`.
+fn again(board: &mut Board, waits: impl Fn() -> bool) -> Option<(Client, Option<String>)> {
+    while waits() {
+        match board.open() {
+            Ok(opened) => return Some(opened),
+            Err(_) => thread::sleep(AGAIN_AFTER),
+        }
+    }
+    None
 }
 
 /// Has the board stream from its start on, and asks for that. Fails if it does not let itself be set.

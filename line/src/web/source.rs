@@ -5,7 +5,7 @@ use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
 use std::thread;
 use std::time::Duration;
 
-use tenax_frames::link::{ANSWER_WITHIN, Client, Counts, Heard, Target};
+use tenax_frames::link::{ANSWER_WITHIN, Board, Client, Counts, Heard, Target};
 use tenax_frames::play::{self, Reel};
 use tenax_frames::truth;
 use tenax_hal_shim::wire::{Answer, BadFrame, Down};
@@ -16,6 +16,8 @@ const AGAIN_AFTER: Duration = Duration::from_millis(500);
 pub enum News {
     Open,
     Gone(String),
+    /// The board is plugged in elsewhere.
+    Moved(String),
     /// A message, or why a frame is none; the counts so far.
     Frame(Result<Heard, BadFrame>, Counts),
     Scene(truth::Told),
@@ -57,12 +59,16 @@ fn watch_recording(path: &Path, controls: &Receiver<String>, news: &Sender<News>
 }
 
 fn watch(target: &Target, commands: &Receiver<Down>, news: &Sender<News>) {
+    let mut board = Board::at(target.clone());
     loop {
-        let ended = match Client::open(target) {
-            Ok(client) => match attend(client, commands, news) {
-                Some(why) => why,
-                None => return,
-            },
+        let ended = match board.open() {
+            Ok((client, moved)) => {
+                moved.into_iter().for_each(|words| _ = news.send(News::Moved(words)));
+                match attend(client, commands, news) {
+                    Some(why) => why,
+                    None => return,
+                }
+            }
             Err(error) => format!("{error:#}"),
         };
         if news.send(News::Gone(ended)).is_err() {
@@ -75,8 +81,7 @@ fn watch(target: &Target, commands: &Receiver<Down>, news: &Sender<News>) {
 /// Attends to one line until it ends; the reason. None: `news` was dropped.
 fn attend(mut client: Client, commands: &Receiver<Down>, news: &Sender<News>) -> Option<String> {
     news.send(News::Open).ok()?;
-    // Reading commands: identity, and whether the last run ended in a fault.
-    let _asked = client.send(&Down::About);
+    // A reading command: whether the last run ended in a fault.
     let _asked = client.send(&Down::Last(0));
     loop {
         let _asked = client.keep_streaming(false);

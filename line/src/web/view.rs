@@ -90,6 +90,7 @@ impl View {
                 }
                 self.tell(json!({ "gone": why }));
             }
+            News::Moved(words) => self.say(&words),
             News::Frame(frame, counts) => {
                 if counts.bad_frames != self.counts.bad_frames || counts.missed != self.counts.missed {
                     self.tell(json!({ "missed": counts.missed, "bad_frames": counts.bad_frames }));

@@ -1,6 +1,6 @@
 //! Drift of the quadrants (cells A to D, clockwise) in a grasp. The element on them is rigid: A + C = B + D.
 //! One cell that breaks this is computed from the other three. A slow fall of all with the motor at rest,
-//! beyond what skin yields, is drift of all.
+//! beyond what skin yields, is drift of all. So is a slow rise, which is reported and not corrected.
 
 use tenax_hal_shim::channel::FSR_COUNT;
 
@@ -50,12 +50,21 @@ pub struct Drift {
     /// Drift of all cells together, mN, and the load at which they were constant.
     sunk_mn: i32,
     stood_at_mn: Option<i32>,
+    /// Load without its slow rise at rest, and with it, mN.
+    rests_mn: Option<[i32; 2]>,
+    /// All cells together drift upwards in this grasp.
+    rises: bool,
 }
 
 impl Drift {
     pub fn blamed(&self) -> Option<usize> {
         // `%` lets the compiler drop the bounds check.
         self.blamed.map(|cell| usize::from(cell) % FSR_COUNT)
+    }
+
+    /// Cells that drift, one bit each.
+    pub fn doubted(&self) -> u8 {
+        if self.rises { (1 << FSR_COUNT) - 1 } else { self.blamed().map_or(0, |cell| 1 << cell) }
     }
 
     /// `loaded_mn`: load of a grasp. `opened`: the motor has opened the hand since it last closed it.
@@ -78,10 +87,12 @@ impl Drift {
         let load_mn: i32 = self.corrected(read_mn).iter().sum();
         if load_mn < loaded_mn {
             (self.learned, self.contradicts, self.stood_at_mn) = (0, 0, None);
+            (self.rests_mn, self.rises) = (None, false);
         } else if self.sunk_mn == 0 || read_mn.iter().filter(|&&mn| mn >= CARRIES_MN).count() + 1 >= FSR_COUNT
         {
             self.contradict(read_mn, load_mn);
             self.sink(load_mn, still);
+            self.rise(load_mn, loaded_mn, still);
         }
     }
 
@@ -173,6 +184,19 @@ impl Drift {
         } else {
             self.sunk_mn += lacks_mn.clamp(0, ALL_FOLLOWS_MN);
         }
+    }
+
+    fn rise(&mut self, load_mn: i32, loaded_mn: i32, still: u32) {
+        let [from_mn, follows_mn] = self.rests_mn.unwrap_or([load_mn; 2]);
+        let off_mn = load_mn - follows_mn;
+        if still < STILL_FOR || off_mn.abs() > TOLERATED_MN + load_mn / TOLERATED_PART {
+            self.rests_mn = Some([(from_mn + off_mn).max(0), load_mn]);
+            return;
+        }
+        let follows_mn = follows_mn + off_mn.clamp(-ALL_FOLLOWS_MN, ALL_FOLLOWS_MN);
+        let from_mn = from_mn.min(follows_mn);
+        self.rests_mn = Some([from_mn, follows_mn]);
+        self.rises |= follows_mn - from_mn > loaded_mn.max(from_mn / YIELDS_PART);
     }
 }
 
@@ -267,6 +291,24 @@ mod tests {
         assert!(seen.iter().all(|load| (5_100..=6_500).contains(load)), "{:?}", seen.last());
         assert_eq!(step(&mut drift, [0; FSR_COUNT], STILL), Cells::Sunk);
         assert_eq!(known(drift.step([0; FSR_COUNT], LOADED_MN, true)), [0; 4]);
+    }
+
+    #[test]
+    fn all_cells_that_rise_slowly_at_rest_are_doubted_and_not_what_presses_or_closes() {
+        for (mn_a_reading, motor, all) in
+            [(5.0, STILL, true), (0.25, STILL, true), (40.0, STILL, false), (5.0, MOVES, false)]
+        {
+            let mut drift = holding(cells(6_500.0, 1_200.0, 0.0));
+            let mut load = 6_500.0;
+            while load < 13_000.0 {
+                load += mn_a_reading;
+                let now = read(cells(load, 1_200.0, 0.0));
+                assert_eq!(known(step(&mut drift, now, motor)), now);
+            }
+            assert_eq!(drift.doubted() == 0b1111, all, "{mn_a_reading} mN, {motor}");
+            step(&mut drift, [0; FSR_COUNT], STILL);
+            assert_eq!(drift.doubted(), 0, "an empty hand");
+        }
     }
 
     #[test]

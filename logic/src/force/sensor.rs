@@ -10,7 +10,7 @@ use super::drift::{Cells, Drift};
 use super::fsr::{force_mn, uv_above_rest};
 
 pub const ZERO_LIMIT_UV: i32 = 60_000;
-pub(super) const CARRIES_MN: i32 = 15;
+pub(crate) const CARRIES_MN: i32 = 15;
 /// Quadrants that have to carry a load. A shear along a diagonal may unload one.
 const AGREEING: usize = 3;
 const FOLLOWED_IN: i32 = 64;
@@ -48,15 +48,16 @@ impl ForceSensor {
         }
     }
 
-    pub fn blamed(&self) -> Option<usize> {
-        self.drift.blamed()
+    pub fn doubted(&self) -> u8 {
+        self.drift.doubted()
     }
 
     pub fn think(&mut self, loaded_mn: i32, still: u32) {
         self.drift.think(self.quadrants(), loaded_mn, still);
     }
 
-    fn quadrants(&self) -> [i32; FSR_COUNT] {
+    /// mN, from the zero; a quadrant that drifts is not corrected.
+    pub fn quadrants(&self) -> [i32; FSR_COUNT] {
         core::array::from_fn(|n| force_mn(self.last_uv[n] - self.zero_uv[n] - self.drift_uv[n]))
     }
 

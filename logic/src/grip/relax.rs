@@ -1,6 +1,7 @@
 //! Release of the force that the reflex added, if `relax-choice` allows it: after [`QUIET_READINGS`] without
 //! a report, in small steps, down to the load that the friction of sliding needs, never below the load that
-//! the hand was closed to, and never by more travel than the reflex closed.
+//! the hand was closed to, and never by more travel than the reflex closed. No load rises by itself: what is
+//! read beyond what the motor added is drift, and is not released.
 
 use super::stiffness::Stiffness;
 
@@ -15,6 +16,16 @@ const LEAST_MN: i32 = 100;
 /// loose comes to rest by itself.
 const KEPT_PERMILLE: i32 = 1_060;
 const DUTY_PERMILLE: u16 = 100;
+/// Drift that is followed in a reading, mN, 0.5 N/s, and the rise beyond it that is another load.
+const DRIFTS_MN: i32 = 6;
+const ANOTHER_MN: i32 = 100;
+/// Readings after a movement in which it may change the load; longer than [`STEP_READINGS`], so that between two
+/// steps the drift of the time before goes on.
+const MOVES_READINGS: u8 = 30;
+/// Average of the rise in a reading over `2^RISES_SHIFT` readings, 1.6 s.
+const RISES_SHIFT: u32 = 7;
+/// A load is below 2^17 mN.
+const Q: u32 = 12;
 
 #[derive(Clone, Copy, Debug)]
 pub struct Reading {
@@ -29,6 +40,13 @@ pub struct Relax {
     /// Load that the hand was closed to, or that it had before a step that a detector answered, mN.
     floor_mn: Option<i32>,
     before_mn: i32,
+    /// Load without what it has risen by itself, mN.
+    counted_mn: i32,
+    /// Rise of the load by itself since the hand was closed, and in a reading, mN with [`Q`] fraction bits.
+    risen: i32,
+    rises: i32,
+    /// Readings until the motor's last movement shows in the load.
+    moves: u8,
     /// Greatest shear of the last seconds and of those before, mN.
     most_mn: [i32; 2],
     quiet: u16,
@@ -45,7 +63,7 @@ impl Relax {
 
     pub const fn closes(&mut self, duty_permille: u16) {
         self.closed = self.closed.saturating_add(duty_permille as u32);
-        self.left = 0;
+        (self.left, self.moves) = (0, MOVES_READINGS);
     }
 
     /// Call it when a detector reports slip or a warning. The load before the last step becomes the floor:
@@ -65,7 +83,8 @@ impl Relax {
         if self.quiet.is_multiple_of(QUIET_READINGS) {
             (*before, *newest) = (*newest, ft_mn);
         }
-        let floor_mn = *self.floor_mn.get_or_insert(load_mn);
+        let counted_mn = self.count(load_mn);
+        let floor_mn = *self.floor_mn.get_or_insert(counted_mn);
         self.quiet = if self.quiet < 2 * QUIET_READINGS { self.quiet + 1 } else { QUIET_READINGS + 1 };
         if self.quiet <= QUIET_READINGS || !self.quiet.is_multiple_of(STEP_READINGS) {
             return;
@@ -73,11 +92,28 @@ impl Relax {
         let Some(slid) = slid_permille.filter(|&slid| slid > 0) else { return };
         // A shear is below 2^17 mN, the product below 2^31.
         let needed_mn = most_mn.clamp(0, 1 << 17) * KEPT_PERMILLE / i32::from(slid);
-        let step_mn = (load_mn - needed_mn.max(floor_mn)).min(STEP_MN);
+        let step_mn = (counted_mn - needed_mn.max(floor_mn)).min(STEP_MN);
         if step_mn >= LEAST_MN {
-            self.before_mn = load_mn;
+            self.before_mn = counted_mn;
+            self.moves = MOVES_READINGS;
             self.left = stiffness.travel_for(step_mn).unwrap_or(0).min(self.closed);
         }
+    }
+
+    /// The load without what it has risen by itself, mN.
+    fn count(&mut self, load_mn: i32) -> i32 {
+        self.moves = if self.left > 0 { MOVES_READINGS } else { self.moves.saturating_sub(1) };
+        let off_mn = load_mn - self.counted_mn - (self.risen >> Q);
+        if self.moves > 0 || off_mn > ANOTHER_MN || self.floor_mn.is_none() {
+            self.risen += self.rises;
+            self.counted_mn = load_mn - (self.risen >> Q);
+        } else {
+            let risen = (self.risen + (off_mn.clamp(-DRIFTS_MN, DRIFTS_MN) << Q)).max(0);
+            self.rises = (self.rises + ((risen - self.risen - self.rises) >> RISES_SHIFT)).max(0);
+            self.risen = risen;
+            self.counted_mn -= (self.counted_mn - load_mn).clamp(0, DRIFTS_MN);
+        }
+        self.counted_mn.min(load_mn)
     }
 
     pub const fn is_on(&self) -> bool {
@@ -104,11 +140,15 @@ mod tests {
         relax: Relax,
         stiffness: Stiffness,
         load_mn: i32,
+        /// Drift of the reading, in each reading and until now, mN.
+        drifts_mn: f64,
+        drift_mn: f64,
     }
 
     impl Hand {
         fn squeezed() -> Self {
-            let mut hand = Self { relax: Relax::default(), stiffness: Stiffness::default(), load_mn: 6_000 };
+            let (relax, stiffness) = Default::default();
+            let mut hand = Self { relax, stiffness, load_mn: 6_000, drifts_mn: 0.0, drift_mn: 0.0 };
             hand.feel(3_000, None, 1);
             for n in 0..8 {
                 for _ in 0..25 {
@@ -127,7 +167,9 @@ mod tests {
         fn feel(&mut self, ft_mn: i32, slid_permille: Option<u16>, readings: usize) -> usize {
             let mut opened = 0;
             for _ in 0..readings {
-                let reading = Reading { load_mn: self.load_mn, ft_mn, slid_permille };
+                self.drift_mn += self.drifts_mn;
+                let load_mn = self.load_mn + self.drift_mn as i32;
+                let reading = Reading { load_mn, ft_mn, slid_permille };
                 self.relax.feel(&reading, &self.stiffness);
                 for _ in 0..25 {
                     let duty = self.relax.opens();
@@ -166,6 +208,18 @@ mod tests {
         hand.load_mn += 3_000;
         hand.feel(100, Some(200), 10 * SILENT);
         assert!(hand.load_mn >= before_mn, "{} mN", hand.load_mn);
+    }
+
+    #[test]
+    fn what_a_reading_gains_by_itself_is_not_released() {
+        // 20 to 400 mN/s, over 25 s.
+        for drifts_mn in [0.25, 1.0, 5.0] {
+            let mut hand = Hand::squeezed();
+            hand.drifts_mn = drifts_mn;
+            assert!(hand.feel(2_000, Some(200), 5 * SILENT) > 0);
+            let needed_mn = 2_000 * 1_000 / 200;
+            assert!(hand.load_mn >= needed_mn, "{drifts_mn}: {} mN", hand.load_mn);
+        }
     }
 
     #[test]

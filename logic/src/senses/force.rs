@@ -1,9 +1,9 @@
 use tenax_hal_shim::channel::{FRAMES_PER_SLOW_FRAME, FSR, FSR_COUNT};
 use tenax_hal_shim::words::{Fault, Reason};
 
-use super::{DOUBTED_AFTER, FSR_LIMITS, OPEN_FRAMES, PRESSED_UV, Senses, report};
+use super::{DOUBTED_AFTER, FSR_LIMITS, OPEN_FRAMES, Senses, UNLOADED_PART, report};
 use crate::config::Config;
-use crate::force::fsr;
+use crate::force::sensor::CARRIES_MN;
 use crate::health::Change;
 use crate::journal::Journal;
 
@@ -28,31 +28,30 @@ impl Senses {
             self.forces = None;
             return;
         };
-        let samples = [a, b, c, d];
-        let is_pressed = |sample: u16| fsr::uv_above_rest(sample) > PRESSED_UV;
-        if !self.fsr_seen {
-            self.fsr_seen = true;
-            for (n, _) in samples.iter().enumerate().filter(|&(_, &sample)| is_pressed(sample)) {
-                journal.fault(Fault::PressedAtBoot { channel: (FSR + n) as u8 });
-                self.pressed = true;
-            }
-        }
-        // Seen unloaded once, its zero is known again.
-        self.pressed &= samples.into_iter().any(is_pressed);
         let opened = self.open_frames > 0;
-        let forces =
-            self.force_sensor.process(samples, config.friction.loaded_mn, opened, self.closes_silently());
+        let loaded_mn = config.friction.loaded_mn;
+        let forces = self.force_sensor.process([a, b, c, d], loaded_mn, opened, self.closes_silently());
         let Some(mut forces) = forces else {
             self.forces = None;
             return;
         };
+        // Seen unloaded once, its zero is known again.
+        let is_loaded = forces.load_mn >= loaded_mn / UNLOADED_PART;
+        self.pressed = is_loaded && (self.pressed || !self.fsr_seen);
+        if !core::mem::replace(&mut self.fsr_seen, true) && is_loaded {
+            for (n, _) in (0..).zip(self.force_sensor.quadrants()).filter(|&(_, mn)| mn >= CARRIES_MN) {
+                journal.fault(Fault::PressedAtBoot { channel: FSR as u8 + n });
+            }
+        }
         if self.pressed {
             // The load may be no object: its size is still a bound, its direction is not.
             forces.ratio_permille = None;
         }
         self.forces = Some(forces);
         if self.open_frames >= OPEN_FRAMES {
-            self.force_sensor.follow();
+            if !self.pressed {
+                self.force_sensor.follow();
+            }
             self.doubt_load(config, journal);
         }
     }
@@ -61,14 +60,16 @@ impl Senses {
         if self.fsr_readings.contains(&None) {
             return;
         }
-        let before = self.blamed.map(|cell| usize::from(cell) % FSR_COUNT);
         let still = self.still_frames / u32::from(FRAMES_PER_SLOW_FRAME);
         self.force_sensor.think(config.friction.loaded_mn, still);
-        self.blamed = self.force_sensor.blamed().map(|blamed| blamed as u8);
-        let blamed = self.force_sensor.blamed();
-        if blamed != before {
-            report(journal, FSR + before.unwrap_or(0), before.map(|_| Change::Back));
-            report(journal, FSR + blamed.unwrap_or(0), blamed.map(|_| Change::Lost(Reason::Creep)));
+        // One quadrant a slow frame: a tick has no time for four reports.
+        let changed = self.force_sensor.doubted() ^ self.doubted;
+        if changed != 0 {
+            let quadrant = changed.trailing_zeros() as usize;
+            self.doubted ^= 1 << quadrant;
+            let is_doubted = self.doubted >> quadrant & 1 != 0;
+            let change = if is_doubted { Change::Lost(Reason::Creep) } else { Change::Back };
+            report(journal, FSR + quadrant, Some(change));
         }
     }
 

@@ -5,9 +5,11 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use crate::hand::{self, Grasp, Health, Step, ceiling_mn, header};
-use crate::message::{DiagnosticArray, GripperCommand, JointState, Margin, Slip, Tactile};
-use tenax_frames::link::{Client, Target};
+use crate::hand::{self, Grasp, Health, Object, Step, ceiling_mn, header};
+use crate::key::Domain;
+use crate::message::{DiagnosticArray, GripperCommand, JointState, Margin, Slip, Tactile, Word};
+use tenax_frames::link::{Board, Client};
+use tenax_hal_shim::channel::SLOW_HZ;
 use tenax_hal_shim::wire::{Answer, Down, Refusal, Senses, Slow, Up};
 use zenoh::Session;
 
@@ -18,10 +20,12 @@ const AGAIN_AFTER: Duration = Duration::from_millis(500);
 const DIAGNOSE_EVERY: Duration = Duration::from_secs(1);
 const SESSIONS_MAX: u32 = 3;
 
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug)]
 pub struct Hand {
     pub name: String,
-    pub line: Target,
+    pub board: Board,
+    /// Gap of the open hand, m.
+    pub range_m: f64,
 }
 
 /// The newest command of the network, until the line's thread takes it.
@@ -32,11 +36,18 @@ struct Topics<'a> {
     slip: Publisher<'a>,
     margin: Publisher<'a>,
     tactile: Publisher<'a>,
+    object: Publisher<'a>,
     diagnostics: Publisher<'a>,
 }
 
-/// Bridges a hand until `stop`, or the session is closed. A line that ends is opened again.
-pub fn bridge(session: &Session, domain: u32, id: u32, hand: &Hand, stop: &AtomicBool) -> anyhow::Result<()> {
+/// Bridges a hand until `stop`, or the session is closed. A line that ends is opened again, wherever the board is plugged in then.
+pub fn bridge(
+    session: &Session,
+    domain: Domain,
+    id: u32,
+    hand: &Hand,
+    stop: &AtomicBool,
+) -> anyhow::Result<()> {
     let name = &hand.name;
     let mut graph = Graph::new(session, domain, id, &format!("tenax_{name}"))?;
     let mut topics = Topics {
@@ -44,6 +55,7 @@ pub fn bridge(session: &Session, domain: u32, id: u32, hand: &Hand, stop: &Atomi
         slip: graph.publisher::<Slip>(&format!("/{name}/slip"))?,
         margin: graph.publisher::<Margin>(&format!("/{name}/margin"))?,
         tactile: graph.publisher::<Tactile>(&format!("/{name}/tactile"))?,
+        object: graph.publisher::<Word>(&format!("/{name}/object"))?,
         diagnostics: graph.publisher::<DiagnosticArray>("/diagnostics")?,
     };
     let desk = Desk::default();
@@ -52,11 +64,12 @@ pub fn bridge(session: &Session, domain: u32, id: u32, hand: &Hand, stop: &Atomi
         graph.subscription::<GripperCommand>(&format!("/{name}/gripper_command"), move |command| {
             *heard.lock().unwrap_or_else(PoisonError::into_inner) = Some(command);
         })?;
-    let mut health = Health::default();
+    let (mut health, mut board) = (Health::default(), hand.board.clone());
     while !stop.load(Ordering::Relaxed) {
-        match Client::open(&hand.line) {
-            Ok(client) => {
-                health.gone = None;
+        match board.open() {
+            Ok((client, moved)) => {
+                moved.into_iter().for_each(|words| eprintln!("/{name}: {words}"));
+                (health.gone, health.line) = (None, board.line.to_string());
                 let mut attendant = Attendant {
                     client,
                     name,
@@ -64,6 +77,8 @@ pub fn bridge(session: &Session, domain: u32, id: u32, hand: &Hand, stop: &Atomi
                     desk: &desk,
                     health: &mut health,
                     senses: None,
+                    range_m: hand.range_m,
+                    object: (Object::default(), "", SLOW_HZ),
                     grasp: None,
                     sent: None,
                     sessions: 0,
@@ -88,6 +103,9 @@ struct Attendant<'a, 'b> {
     desk: &'a Desk,
     health: &'a mut Health,
     senses: Option<Senses>,
+    range_m: f64,
+    /// The object, the word that was published last, and slow frames since then.
+    object: (Object, &'static str, u32),
     grasp: Option<Grasp>,
     sent: Option<(u16, Down)>,
     /// Sessions that were asked for since the last command came.
@@ -97,9 +115,6 @@ struct Attendant<'a, 'b> {
 impl Attendant<'_, '_> {
     /// Serves the line until it ends; the reason. Fails if nothing can be published any more.
     fn attend(&mut self, stop: &AtomicBool) -> anyhow::Result<String> {
-        if self.client.can_send() {
-            let _asked = self.client.send(&Down::About);
-        }
         let mut diagnosed = Instant::now();
         while !stop.load(Ordering::Relaxed) {
             let _asked = self.client.keep_streaming(false);
@@ -138,10 +153,20 @@ impl Attendant<'_, '_> {
 
     fn publish(&mut self, slow: &Slow) -> anyhow::Result<()> {
         let head = || header(self.name, now_ns());
-        self.topics.joints.publish(&hand::joint_state(head(), slow))?;
+        let senses = self.senses.as_ref();
+        self.topics.joints.publish(&hand::joint_state(head(), slow, senses, self.range_m))?;
         self.topics.slip.publish(&hand::slip(head(), slow))?;
         self.topics.margin.publish(&hand::margin(head(), slow))?;
-        self.topics.tactile.publish(&hand::tactile(head(), slow, self.senses.as_ref()))
+        self.topics.tactile.publish(&hand::tactile(head(), slow, senses))?;
+        // At each change, and each second for who comes later.
+        let (object, said, since) = &mut self.object;
+        let word = object.follow(slow);
+        *since += 1;
+        if word != *said || *since >= SLOW_HZ {
+            (*said, *since) = (word, 0);
+            self.topics.object.publish(&Word { data: word.to_owned() })?;
+        }
+        Ok(())
     }
 
     fn command(&mut self, slow: &Slow) {

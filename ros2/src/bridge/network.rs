@@ -3,7 +3,7 @@
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use crate::cdr;
-use crate::key::{self, Attachment, GID, Node, Role, gid};
+use crate::key::{self, Attachment, Domain, GID, Node, Role, gid};
 use crate::message::Message;
 use anyhow::{Context, anyhow, bail};
 use zenoh::liveliness::LivelinessToken;
@@ -81,7 +81,7 @@ pub struct Graph<'a> {
 
 impl<'a> Graph<'a> {
     /// A node that the others see from now on. `id` is its own in the session.
-    pub fn new(session: &'a Session, domain: u32, id: u32, name: &str) -> anyhow::Result<Self> {
+    pub fn new(session: &'a Session, domain: Domain, id: u32, name: &str) -> anyhow::Result<Self> {
         let node = Node { domain, session: session.zid().to_string(), id, name: name.to_owned() };
         let mut graph = Self { session, node, entities: 0, tokens: Vec::new() };
         graph.live(&graph.node.token())?;

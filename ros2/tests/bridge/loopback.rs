@@ -9,13 +9,15 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use common::Served;
+use tenax_frames::link::Board;
 use tenax_ros2::bridge::hand::{Hand, bridge};
 use tenax_ros2::bridge::network::{Place, open};
-use tenax_ros2::key::{Attachment, topic};
-use tenax_ros2::message::{DiagnosticArray, GripperCommand, JointState, Message, Slip};
+use tenax_ros2::key::{Attachment, Domain, topic};
+use tenax_ros2::message::{DiagnosticArray, GripperCommand, JointState, Message, Slip, Word};
 use tenax_ros2::{cdr, key};
 use zenoh::{Session, Wait};
 
+const DOMAIN: Domain = Domain { number: 7, humble: false };
 const WITHIN: Duration = Duration::from_secs(10);
 
 /// A gripper that touches nothing: at its start the board consents.
@@ -28,7 +30,7 @@ struct Ros<'a> {
 impl Ros<'_> {
     fn hear<M: Message + Send + 'static>(&self, name: &str) -> Receiver<(M, Attachment)> {
         let (told, hears) = channel();
-        let declared = self.session.declare_subscriber(topic::<M>(7, name)).callback(move |sample| {
+        let declared = self.session.declare_subscriber(topic::<M>(DOMAIN, name)).callback(move |sample| {
             let message = cdr::message::<M>(&sample.payload().to_bytes()).expect("it decodes");
             let attached = sample.attachment().expect("rmw_zenoh drops what has none").to_bytes();
             let attached: [u8; 33] = attached[..].try_into().expect("33 bytes");
@@ -42,7 +44,7 @@ impl Ros<'_> {
 
     fn grip(&self, position: f64, max_effort: f64) {
         let payload = cdr::payload(&GripperCommand { position, max_effort }).unwrap();
-        self.session.put(topic::<GripperCommand>(7, "/left/gripper_command"), payload).wait().unwrap();
+        self.session.put(topic::<GripperCommand>(DOMAIN, "/left/gripper_command"), payload).wait().unwrap();
     }
 }
 
@@ -53,10 +55,11 @@ fn with(scene: &str, ask: impl FnOnce(&Ros)) {
     let at = format!("tcp/{free}");
     let own = open(&Place::RouterHere(at.clone())).unwrap();
     let others = open(&Place::At(at)).unwrap();
-    let hand = Hand { name: "left".to_owned(), line: served.line.parse().unwrap() };
+    let board = Board::at(served.line.parse().unwrap());
+    let hand = Hand { name: "left".to_owned(), board, range_m: 0.1 };
     let stop = AtomicBool::new(false);
     thread::scope(|scope| {
-        let bridging = scope.spawn(|| bridge(&own, 7, 0, &hand, &stop));
+        let bridging = scope.spawn(|| bridge(&own, DOMAIN, 0, &hand, &stop));
         let asked = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| ask(&Ros { session: &others })));
         stop.store(true, Ordering::Relaxed);
         bridging.join().unwrap().unwrap();
@@ -110,7 +113,7 @@ fn every_joint_state_arrives_in_order_and_the_graph_knows_the_hand() {
         assert!(tokens.iter().any(|token| token.ends_with("/NN/%/%/tenax_left")), "{tokens:?}");
         let joint = tokens.iter().find(|token| token.contains("%left%joint_states")).unwrap();
         assert_eq!(key::gid(joint), attached.gid, "the id is its token's");
-        assert_eq!(tokens.len(), 7, "a node, five topics and the one it hears: {tokens:?}");
+        assert_eq!(tokens.len(), 8, "a node, six topics and the one it hears: {tokens:?}");
     });
 }
 
@@ -119,15 +122,23 @@ fn with_consent_a_command_closes_to_its_force_and_opens_again() {
     with(CONSENTING, |ros| {
         let (joints, slip) = (ros.hear::<JointState>("/left/joint_states"), ros.hear::<Slip>("/left/slip"));
         let diagnostics = ros.hear::<DiagnosticArray>("/diagnostics");
+        let object = ros.hear::<Word>("/left/object");
         wait_for(&slip, "it never consents", |slip| slip.line_may_command);
+        wait_for(&object, "it holds something", |object| object.data == "none");
+        let gap = |joints: &JointState| joints.position.first().copied().unwrap_or(f64::NAN);
+        let open_m = gap(&wait_for(&joints, "no position", |joints| !joints.position.is_empty()));
+        assert!((0.02..=0.1).contains(&open_m), "{open_m} m");
         wait_for(&joints, "it holds something", |joints| force(joints) < 0.3);
         ros.grip(0.0, 5.0);
         wait_for(&joints, "it does not close", |joints| force(joints) >= 5.0);
         wait_for(&diagnostics, "not said", |said| said_of_command(said) == "the force is reached");
         let held = newest(&joints);
         assert!((4.0..7.0).contains(&held), "{held} N");
+        wait_for(&joints, "it is as open as before", |joints| gap(joints) < open_m - 0.005);
+        wait_for(&object, "it holds nothing", |object| object.data == "held");
         ros.grip(0.05, 0.0);
         wait_for(&joints, "it does not open", |joints| force(joints) < 0.3);
+        wait_for(&object, "it is not let go of", |object| object.data == "none");
     });
 }
 

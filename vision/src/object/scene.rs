@@ -16,7 +16,7 @@ const LIGHT: (i32, i32) = (30, 235);
 const LIGHT_MIN: i32 = 2;
 /// Grey levels from its mean beyond which a pixel moves: twice the noise of a cheap camera.
 const MOVES: i16 = 14;
-/// The running mean follows by this power of two: it forgets a move after some four frames.
+/// Usual rate of the running mean: it forgets a move after some four frames.
 const RUNNING_RATE: u32 = 2;
 
 type Levels = Box<[i16; PIXELS]>;
@@ -125,18 +125,20 @@ fn apart(level: u8, old: i16) -> i16 {
 pub struct Running {
     mean: Levels,
     started: bool,
+    /// It follows by this power of two.
+    pub rate: u32,
 }
 
 impl Default for Running {
     fn default() -> Self {
-        Self { mean: plane(), started: false }
+        Self { mean: plane(), started: false, rate: RUNNING_RATE }
     }
 }
 
 impl Running {
     /// Marks with 1 what moves.
     pub fn step(&mut self, grey: &Plane, into: &mut Plane) {
-        let (rate, limit) = (if self.started { RUNNING_RATE } else { 0 }, MOVES << FRACTION);
+        let (rate, limit) = (if self.started { self.rate } else { 0 }, MOVES << FRACTION);
         let mean = &mut *self.mean;
         for at in 0..PIXELS {
             let off = (i16::from(grey[at]) << FRACTION) - mean[at];

@@ -26,7 +26,6 @@ pub struct Client {
     outbox: Option<Outbox<Box<dyn Write + Send>>>,
     inbox: Inbox,
     heard: VecDeque<Result<Heard, BadFrame>>,
-    /// Number of the command that is waited for, and its answer.
     /// Number of the command whose answer is awaited, and the setting that it names.
     asked: Option<(u16, Option<u8>)>,
     answer: Option<Answer>,
@@ -58,6 +57,11 @@ impl Client {
 
     pub fn counts(&self) -> Counts {
         self.inbox.counts()
+    }
+
+    /// Goes on from the counts of the client of a line that has ended.
+    pub fn count_on(&mut self, before: Counts) {
+        self.inbox.count_on(before);
     }
 
     /// The next message. None if none comes within 0.1 s. Fails if the line has ended: with `UnexpectedEof` if it was closed in order.

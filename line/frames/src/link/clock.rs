@@ -20,6 +20,8 @@ pub struct Clock {
     start: i64,
     /// The file's time 0 by the clock of the computer that heard the line, ns since 1970.
     zero_ns: Option<i64>,
+    /// When the newest message came, ns since 1970.
+    came_ns: Option<u64>,
 }
 
 impl Clock {
@@ -53,6 +55,13 @@ impl Clock {
         (self.last, self.is_first) = (Some(frame), is_hello);
         self.zero_ns = self.zero_ns.or(came_ns.map(|came| came as i64 - (self.newest + 1) * FRAME_NS));
         is_restart && !is_hello
+    }
+
+    /// Time from the message before to one that comes now, s; 0 where that is not known.
+    pub fn silence_s(&mut self, came_ns: Option<u64>) -> f64 {
+        let before_ns = self.came_ns;
+        self.came_ns = came_ns.or(before_ns);
+        came_ns.zip(before_ns).map_or(0.0, |(now, before)| now.saturating_sub(before) as f64 / 1e9)
     }
 
     /// The newest frame, as the board counts.

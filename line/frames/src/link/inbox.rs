@@ -57,6 +57,12 @@ impl Inbox {
     pub const fn counts(&self) -> Counts {
         self.counts
     }
+
+    pub const fn count_on(&mut self, before: Counts) {
+        self.counts.messages += before.messages;
+        self.counts.bad_frames += before.bad_frames;
+        self.counts.missed += before.missed;
+    }
 }
 
 #[cfg(test)]

@@ -23,18 +23,27 @@ pub struct Row {
     pub fields: Fields,
 }
 
-/// The rows of a message that the clock hears, with that of a start which nobody heard. None before the first frame.
+/// Time without a message from which it is an event, s.
+const SILENCE_S: f64 = 1.0;
+
+/// The rows of a message that the clock hears, with those of a silence before it and of a start that nobody heard. None before the
+/// first frame.
 pub fn timed(clock: &mut Clock, message: &Up, came_ns: Option<u64>) -> Vec<Row> {
+    let silent_s = clock.silence_s(came_ns);
     let is_missed = clock.hear(message, came_ns);
     let Some(last) = clock.last() else { return Vec::new() };
-    let start = "the board has started again: its first message was missed";
-    let start = is_missed.then(|| row("/event", "Event", last, [("text", Text(start.to_owned()))]));
-    start.into_iter().chain(rows(message, last)).collect()
+    let silence = (silent_s > SILENCE_S).then(|| event(&format!("nothing came for {silent_s:.1} s"), last));
+    let start = is_missed.then(|| event("the board has started again: its first message was missed", last));
+    silence.into_iter().chain(start).chain(rows(message, last)).collect()
+}
+
+fn event(words: &str, frame: u32) -> Row {
+    row("/event", "Event", frame, [("text", Text(words.to_owned()))])
 }
 
 /// The rows of a message. `last` is the newest frame, for messages that name none.
 pub fn rows(message: &Up, last: u32) -> Vec<Row> {
-    let text = |frame| row("/event", "Event", frame, [("text", Text(words(message)))]);
+    let text = |frame| event(&words(message), frame);
     let settings = |all: &[Setting], frame| {
         [text(frame)].into_iter().chain(all.iter().map(|own| setting(own, frame))).collect()
     };
