@@ -163,8 +163,9 @@ class Fingertip:
             if unknown:
                 raise KeyError(f"no channel: {', '.join(sorted(unknown))}")
             frame = [frame.get(name, rest_v) for name, rest_v in REST_V.items()]
-        row = self._own.tick(np.atleast_2d(np.ascontiguousarray(frame, dtype=np.float64)))
-        return Tick(**{**row, "source": SOURCES[int(row["source"])], "mode": MODES[int(row["mode"])]})  # type: ignore[arg-type]
+        table = self._own.tick(np.atleast_2d(np.ascontiguousarray(frame, dtype=np.float64)))
+        row: Dict[str, Any] = {name: column.item() for name, column in table.items()}
+        return Tick(**{**row, "source": SOURCES[row["source"]], "mode": MODES[row["mode"]]})
 
     def state(self) -> Optional[Dict[str, float]]:
         """Forces (N), ratio, s2, margin_n and muscles (mV), after each 25th tick; NaN: not known. None after the others."""

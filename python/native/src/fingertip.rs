@@ -19,8 +19,11 @@ use tenax_sim::board::simulated::{Stepper, frames_in, seconds_of};
 use tenax_sim::recipe::Kind;
 use tenax_sim::replay::{Recipe, Recording, ReplayPlant};
 
-use crate::columns::{self, Kept, signed};
+use crate::columns::{self, Kept};
 use crate::refused;
+
+/// Columns of ticks and of slow frames; events' times, s, and words.
+type Told<'py> = (Bound<'py, PyDict>, Bound<'py, PyDict>, Vec<(f64, String)>);
 
 /// Settings by name, as `tenax config` writes them.
 pub type Settings = Vec<(String, i32)>;
@@ -105,7 +108,7 @@ impl Fingertip {
         Ok(Self { settings, plant, board, kept, frames: 0 })
     }
 
-    /// One row of volts for the whole frame, or one for each of its four scans.
+    /// One row of volts for the whole frame, or one for each of its four scans. Columns with one row.
     fn tick<'py>(
         &mut self,
         py: Python<'py>,
@@ -127,18 +130,7 @@ impl Fingertip {
         self.frames += 1;
         let fingertip = &self.board.device.fingertip;
         let tick = fingertip.last_tick().unwrap_or_default();
-        let row = PyDict::new(py);
-        row.set_item("time_s", seconds_of(self.frames))?;
-        row.set_item("vibration_mv", f64::from(tick.vibration) * columns::MV)?;
-        row.set_item("o1", f64::from(tick.outputs[0]) / 128.0)?;
-        row.set_item("o2", f64::from(tick.outputs[1]) / 128.0)?;
-        row.set_item("drive", signed(tick.drive))?;
-        row.set_item("source", tick.source as u8)?;
-        row.set_item("said", tick.said.bits())?;
-        row.set_item("believed", tick.believed.bits())?;
-        row.set_item("acted", tick.acted.bits())?;
-        row.set_item("mode", fingertip.mode() as u8)?;
-        Ok(row)
+        columns::ticks(py, vec![seconds_of(self.frames)], &[(tick, fingertip.mode())])
     }
 
     /// Quantities of the slow frame that ended with the last tick. None: none did.
@@ -155,7 +147,7 @@ impl Fingertip {
         columns: Vec<(String, PyReadonlyArray1<'py, f64>)>,
         recipe: Option<&str>,
         seed: u64,
-    ) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyDict>, Vec<(f64, String)>)> {
+    ) -> PyResult<Told<'py>> {
         let recording = recording(t_s, columns)?;
         let (mut ticks, mut kept, mut events) = (Vec::new(), Kept::default(), Vec::new());
         let zero_s = py.detach(|| {
