@@ -1,26 +1,28 @@
 """Each detector alone, the firmware's own, on signals of anybody's sensors.
 
-    detector  source                    published here as                         rows a second
-    s1        Prosthesis, section 5     films at 2 kHz, 14 bits, 20 to 150 Hz     2000
-    s2        Prosthesis, section 5     Ft/Fn above S2                            80
-    hebbian   Tada 2006, eqs 1 to 6     12 films and 12 gauges, taught at 30 Hz   2000
-    mlp       Bamshad 2023, section 4   10 taxels, n = 10 and n = 40 readings     80
+    detector      source                    published parameters                      rows a second
+    s1            Prosthesis, section 5     films at 2 kHz, 14 bits, 20 to 150 Hz     2000
+    s2            Prosthesis, section 5     Ft/Fn above S2                            80
+    hebbian       Tada 2006, eqs 1 to 6     12 films and 12 gauges, taught at 30 Hz   2000
+    mlp           Bamshad 2023, section 4   10 taxels, n = 10 and n = 40 readings     80
+    photoelastic  Dubey 2006, section 4     ac part of the light                      2000
 
-Another rate is resampled along straight lines between rows, with a warning that says so: low-pass a faster signal first.
+Another rate is resampled along straight lines between rows, with a warning that says so: low-pass a faster signal first. Volts are rounded to
+the board's 14 bits.
 """
 
 from __future__ import annotations
 
 import warnings
 from dataclasses import dataclass
-from typing import Any, Optional, Tuple
+from typing import Any, Mapping, Optional, Tuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _native
 
-__all__ = ["Detection", "hebbian", "mlp", "s1", "s2"]
+__all__ = ["Detection", "features", "hebbian", "mlp", "photoelastic", "s1", "s2"]
 
 
 @dataclass(frozen=True)
@@ -65,21 +67,35 @@ def _centred(films: ArrayLike) -> NDArray[np.float64]:
 def s1(films_v: ArrayLike, rate_hz: float, *, s1_mv: Optional[int] = None) -> Detection:
     """S1, slip from vibration: one to twelve films (V at the pin; each one's mean is taken off). `value`: the loudest envelope, mV, of which
     S1 needs `s1_mv`, as set in the firmware unless given."""
-    return _detection(_native.s1(_centred(films_v), rate_hz, s1_mv), "mV", rate_hz, 2000)
+    settings = [] if s1_mv is None else [("s1-mv", s1_mv)]
+    return _detection(_native.s1(_centred(films_v), rate_hz, settings), "mV", rate_hz, 2000)
 
 
 def s2(normal_n: ArrayLike, shear_n: ArrayLike, rate_hz: float, *, s2: Optional[float] = None) -> Detection:
     """S2, slip to come from friction: normal force and shear of a finger, N. `value`: Ft/Fn, NaN below the firmware's least load. S2 rises with
     the friction that the grasp has shown."""
-    permille = None if s2 is None else round(1000 * s2)
+    settings = [] if s2 is None else [("s2-permille", round(1000 * s2))]
     normal, shear = np.ascontiguousarray(normal_n, dtype=np.float64), np.ascontiguousarray(shear_n, dtype=np.float64)
-    return _detection(_native.s2(normal, shear, rate_hz, permille), "Ft/Fn", rate_hz, 80)
+    return _detection(_native.s2(normal, shear, rate_hz, settings), "Ft/Fn", rate_hz, 80)
 
 
 def mlp(taxels_v: ArrayLike, rate_hz: float) -> Detection:
     """The network that ships: ten taxels of normal force (V at the pin, 0.2 at rest); with fewer it is blind. `value`: its confidence, 0 to 1.
     It has learned on simulated contacts."""
     return _detection(_native.mlp(_columns(taxels_v), rate_hz), "confidence", rate_hz, 80)
+
+
+def features(taxels_v: ArrayLike, rate_hz: float) -> NDArray[np.int16]:
+    """The 112 numbers that the firmware makes of ten taxels (V), a row a slow frame: 55 covariances, 21 spectral bins, 36 structure functions,
+    as logarithms; 0 in the first half second."""
+    return _native.features(_columns(taxels_v), rate_hz)
+
+
+def photoelastic(light_v: ArrayLike, rate_hz: float, *, settings: Optional[Mapping[str, int]] = None) -> Detection:
+    """A photoelastic head that is pressed: its voltage. `value`: the envelope of the ac part, mV. Its calibration is in the settings that begin
+    with `head-`."""
+    light = np.ascontiguousarray(light_v, dtype=np.float64)
+    return _detection(_native.photoelastic(light, rate_hz, list((settings or {}).items())), "mV", rate_hz, 2000)
 
 
 def hebbian(

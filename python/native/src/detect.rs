@@ -1,64 +1,76 @@
 //! Each detector alone, on signals of anybody's sensors.
 
-use numpy::{PyArray1, PyReadonlyArray1, PyReadonlyArray2};
+use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
-use tenax_hal_shim::channel::{ARRAY, ARRAY_COUNT, FRAMES_PER_SLOW_FRAME, PVDF_COUNT, SCANS_PER_FRAME};
+use tenax_hal_shim::channel::{
+    ARRAY, ARRAY_COUNT, CHANNELS, FRAME_HZ, FRAMES_PER_SLOW_FRAME, HEAD, PVDF, PVDF_COUNT, SAMPLE_MAX,
+    SCANS_PER_FRAME, SLOW_HZ, STRAIN, STRAIN_COUNT, sample_from_mv,
+};
 use tenax_hal_shim::front_end::fsr_quadrants_n;
 use tenax_hal_shim::wire::Forces;
 use tenax_hal_shim::words::Code;
+use tenax_logic::array::shipped::MODEL;
 use tenax_logic::array::taxels::Taxels;
-use tenax_logic::array::{Reading, ShippedDetector};
+use tenax_logic::array::{FEATURES, Preprocessor, Reading, ShippedDetector};
 use tenax_logic::config::Config;
 use tenax_logic::detectors::{Detector, Said, Sensed};
 use tenax_logic::force::FrictionDetector;
 use tenax_logic::force::sensor::forces;
 use tenax_logic::hebbian::HebbianDetector;
-use tenax_logic::photoelastic::Head;
+use tenax_logic::photoelastic::track::Hints;
+use tenax_logic::photoelastic::{Head, HeadConfig, PhotoelasticDetector};
 use tenax_logic::store::record::{PAYLOAD_BYTES, Record};
 use tenax_logic::strain::Gauges;
 use tenax_logic::vibration::{Vibration, VibrationDetector};
-use tenax_scene::plant::Pins;
-use tenax_sim::replay::resample::Grid;
 
 use crate::columns::{MV, put};
+use crate::fingertip::{Settings, config};
 
 const SLOTS: usize = FRAMES_PER_SLOW_FRAME as usize;
-/// Scans in a slow frame.
-const SCANS: usize = SLOTS * SCANS_PER_FRAME;
 
 type Table<'py> = PyResult<Bound<'py, PyDict>>;
 
-/// A signal of `rate_hz` rows a second, on the scans' instants, 8000 a second.
-fn drawn(values: Vec<f64>, rate_hz: f64) -> PyResult<Vec<f64>> {
-    if values.len() < 2 || !values.iter().all(|value| value.is_finite()) || !(rate_hz > 0.0 && rate_hz < 1e9)
-    {
+/// A signal of `rate_hz` rows a second at `own_hz`: along straight lines between rows; of a faster one, the mean of four instants, as the
+/// board takes four scans.
+fn drawn(values: &[f64], rate_hz: f64, own_hz: u32) -> PyResult<Vec<f64>> {
+    if values.len() < 2 || !values.iter().all(|value| value.is_finite()) || !(1e-3..1e9).contains(&rate_hz) {
         return Err(PyValueError::new_err("a signal has two rows or more, finite, and a rate in Hz"));
     }
-    let t_s: Vec<f64> = (0..values.len()).map(|row| row as f64 / rate_hz).collect();
-    let grid = Grid::new(rate_hz, 0.0, values.len() as f64 / rate_hz, 0.0, 0.0);
-    Ok(grid.thin(&grid.draw(&t_s, &values)))
+    let rows = rate_hz / f64::from(own_hz);
+    let instants = if rows > 1.0 { SCANS_PER_FRAME } else { 1 };
+    let at = |row: f64| {
+        let (before, part) = ((row as usize).min(values.len() - 1), row.fract());
+        let after = values[(before + 1).min(values.len() - 1)];
+        values[before] + part * (after - values[before])
+    };
+    let mean = |n: usize| {
+        let step = |k: usize| at((n as f64 + k as f64 / instants as f64) * rows);
+        (0..instants).map(step).sum::<f64>() / instants as f64
+    };
+    Ok((0..(values.len() as f64 / rows) as usize).map(mean).collect())
 }
 
-fn columns(array: &PyReadonlyArray2<'_, f64>, most: usize, rate_hz: f64) -> PyResult<Vec<Vec<f64>>> {
+fn columns(
+    array: &PyReadonlyArray2<'_, f64>,
+    most: usize,
+    rate_hz: f64,
+    own_hz: u32,
+) -> PyResult<Vec<Vec<f64>>> {
     let array = array.as_array();
     if !(1..=most).contains(&array.ncols()) {
         return Err(PyValueError::new_err(format!("1 to {most} columns, not {}", array.ncols())));
     }
-    array.columns().into_iter().map(|column| drawn(column.to_vec(), rate_hz)).collect()
+    array.columns().into_iter().map(|column| drawn(&column.to_vec(), rate_hz, own_hz)).collect()
 }
 
-/// Samples (14 bits) of `count` channels from `first` on, as the converter would read these volts.
-fn samples<const N: usize>(columns: &[Vec<f64>], first: usize, scans: std::ops::Range<usize>) -> [u16; N] {
-    let mut sums = [0; N];
-    for scan in scans {
-        let mut pins = Pins::default();
-        columns.iter().enumerate().for_each(|(n, column)| pins.0[first + n] = column[scan]);
-        let codes = pins.codes();
-        sums.iter_mut().zip(&codes[first..]).for_each(|(sum, code)| *sum += code);
-    }
-    sums
+/// Samples (14 bits) of a row of volts; of columns that are not there, what their pins have at rest.
+fn samples<const N: usize>(columns: &[Vec<f64>], first: usize, row: usize) -> [u16; N] {
+    std::array::from_fn(|n| match columns.get(n).and_then(|column| column.get(row).or(column.last())) {
+        Some(volts) => (volts * 1e3 / MV).round().clamp(0.0, f64::from(SAMPLE_MAX)) as u16,
+        None => sample_from_mv(CHANNELS[first + n].rest_mv),
+    })
 }
 
 struct Sensors {
@@ -135,33 +147,18 @@ fn frame_s(frame: usize) -> f64 {
     tenax_sim::board::simulated::seconds_of(frame as u32 + 1)
 }
 
-fn config(s1_mv: Option<i32>, s2_permille: Option<i32>) -> PyResult<Config> {
-    use tenax_logic::setting::SettingId;
-    let mut config = Config::default();
-    for (id, value) in [(SettingId::S1, s1_mv), (SettingId::S2, s2_permille)] {
-        if let Some(value) = value {
-            config.set(id, value).map_err(|range| {
-                PyValueError::new_err(format!("a threshold of {value} is not within {range:?}"))
-            })?;
-        }
-    }
-    Ok(config)
-}
-
 /// S1 (Prosthesis, section 5) of films' volts: value is the loudest film's envelope, mV.
 #[pyfunction]
-#[pyo3(signature = (volts, rate_hz, s1_mv))]
 pub fn s1<'py>(
     py: Python<'py>,
     volts: PyReadonlyArray2<'py, f64>,
     rate_hz: f64,
-    s1_mv: Option<i32>,
+    settings: Settings,
 ) -> Table<'py> {
-    let (config, films) = (config(s1_mv, None)?, columns(&volts, PVDF_COUNT, rate_hz)?);
+    let (config, films) = (config(&settings)?, columns(&volts, PVDF_COUNT, rate_hz, FRAME_HZ)?);
     let (mut detector, mut told) = (VibrationDetector::default(), Told::default());
-    for frame in 0..films[0].len() / SCANS_PER_FRAME {
-        let scans = frame * SCANS_PER_FRAME..(frame + 1) * SCANS_PER_FRAME;
-        let vibration = detector.process(&config.vibration, &samples(&films, 0, scans), None);
+    for frame in 0..films[0].len() {
+        let vibration = detector.process(&config.vibration, &samples(&films, PVDF, frame), None);
         if (frame + 1) % SLOTS == 0 {
             detector.learn_noise(&config.vibration, false);
         }
@@ -172,20 +169,19 @@ pub fn s1<'py>(
 
 /// S2 (Prosthesis, section 5) of normal force and shear in newtons, 80 times a second: value is Ft/Fn.
 #[pyfunction]
-#[pyo3(signature = (normal_n, shear_n, rate_hz, s2_permille))]
 pub fn s2<'py>(
     py: Python<'py>,
     normal_n: PyReadonlyArray1<'py, f64>,
     shear_n: PyReadonlyArray1<'py, f64>,
     rate_hz: f64,
-    s2_permille: Option<i32>,
+    settings: Settings,
 ) -> Table<'py> {
-    let config = config(None, s2_permille)?.friction;
-    let normal = drawn(normal_n.as_array().to_vec(), rate_hz)?;
-    let shear = drawn(shear_n.as_array().to_vec(), rate_hz)?;
+    let config = config(&settings)?.friction;
+    let normal = drawn(&normal_n.as_array().to_vec(), rate_hz, SLOW_HZ)?;
+    let shear = drawn(&shear_n.as_array().to_vec(), rate_hz, SLOW_HZ)?;
     let (mut detector, mut told) = (FrictionDetector::default(), Told::default());
     let (sensors, mut said) = (Sensors::default(), Said::NOTHING);
-    for (n, (normal, shear)) in normal.iter().zip(&shear).skip(SCANS - 1).step_by(SCANS).enumerate() {
+    for (n, (normal, shear)) in normal.iter().zip(&shear).enumerate() {
         let quadrants = fsr_quadrants_n(normal.max(0.0), *shear, 0.0);
         let forces = forces(quadrants.map(|newtons| (newtons * 1e3) as i32), config.loaded_mn);
         let frame = (n * SLOTS) as u32;
@@ -196,18 +192,61 @@ pub fn s2<'py>(
     told.table(py)
 }
 
+fn readings(taxels_v: &[Vec<f64>]) -> impl Iterator<Item = Reading> {
+    let mut taxels = Taxels::default();
+    (0..taxels_v[0].len()).map(move |row| {
+        let read: [u16; ARRAY_COUNT] = samples(taxels_v, ARRAY, row);
+        read.iter().enumerate().take(taxels_v.len()).for_each(|(n, &sample)| _ = taxels.read(n, sample));
+        *taxels.reading()
+    })
+}
+
+/// Features of taxels' volts, as the firmware's network gets them, a row a slow frame; 0 until the windows are full.
+#[pyfunction]
+pub fn features<'py>(
+    py: Python<'py>,
+    volts: PyReadonlyArray2<'py, f64>,
+    rate_hz: f64,
+) -> PyResult<Bound<'py, PyArray2<i16>>> {
+    let taxels_v = columns(&volts, ARRAY_COUNT, rate_hz, SLOW_HZ)?;
+    let mut preprocessor = Preprocessor::new(MODEL.preprocessor);
+    let rows: Vec<Vec<i16>> = readings(&taxels_v)
+        .map(|reading| preprocessor.push(&reading).map_or(vec![0; FEATURES], |features| features.to_vec()))
+        .collect();
+    Ok(PyArray2::from_vec2(py, &rows)?)
+}
+
+/// A photoelastic head's flicker (Dubey 2006) on its volts: value is the ac envelope, mV.
+#[pyfunction]
+pub fn photoelastic<'py>(
+    py: Python<'py>,
+    volts: PyReadonlyArray1<'py, f64>,
+    rate_hz: f64,
+    settings: Settings,
+) -> Table<'py> {
+    let config = HeadConfig { fitted: true, ..config(&settings)?.head };
+    let light = [drawn(&volts.as_array().to_vec(), rate_hz, FRAME_HZ)?];
+    let (mut detector, mut told) = (PhotoelasticDetector::default(), Told::default());
+    let mut sensors = Sensors::default();
+    for frame in 0..light[0].len() {
+        let [sample] = samples(&light, HEAD, frame);
+        sensors.head.process(&config, sample);
+        if (frame + 1) % SLOTS == 0 {
+            sensors.head.cycle(&config, Hints { unloaded: false, force_mn: None });
+        }
+        let said = detector.step(&config, &sensors.sensed(frame as u32, None, true));
+        told.push(frame_s(frame), said.unwrap_or_default(), f64::from(sensors.head.level()) * MV);
+    }
+    told.table(py)
+}
+
 /// The MLP that ships (Bamshad 2023) on taxels' volts, 80 times a second: value is its confidence, 0 to 1.
 #[pyfunction]
-#[pyo3(signature = (volts, rate_hz))]
 pub fn mlp<'py>(py: Python<'py>, volts: PyReadonlyArray2<'py, f64>, rate_hz: f64) -> Table<'py> {
-    let taxels_v = columns(&volts, ARRAY_COUNT, rate_hz)?;
-    let (mut taxels, mut detector, mut told) =
-        (Taxels::default(), ShippedDetector::default(), Told::default());
-    for cycle in 0..taxels_v[0].len() / SCANS {
-        let last = (cycle + 1) * SCANS;
-        let read: [u16; ARRAY_COUNT] = samples(&taxels_v, ARRAY, last - SCANS_PER_FRAME..last);
-        read.iter().enumerate().take(taxels_v.len()).for_each(|(n, &sample)| _ = taxels.read(n, sample));
-        let verdict = detector.push(taxels.reading());
+    let taxels_v = columns(&volts, ARRAY_COUNT, rate_hz, SLOW_HZ)?;
+    let (mut detector, mut told) = (ShippedDetector::default(), Told::default());
+    for (cycle, reading) in readings(&taxels_v).enumerate() {
+        let verdict = detector.push(&reading);
         let (said, sure) = (Said::slip(verdict.slip), f64::from(verdict.confidence_permille) / 1e3);
         told.push(frame_s((cycle + 1) * SLOTS - 1), said, sure);
     }
@@ -230,9 +269,10 @@ pub fn hebbian<'py>(
     knows: Option<&[u8]>,
 ) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyBytes>)> {
     let config = Config::default();
-    let films = columns(&films_v, PVDF_COUNT, rate_hz)?;
-    let strain = strain_v.map(|volts| columns(&volts, PVDF_COUNT, rate_hz)).transpose()?.unwrap_or_default();
-    let held = drawn(held.as_array().to_vec(), rate_hz)?;
+    let films = columns(&films_v, PVDF_COUNT, rate_hz, FRAME_HZ)?;
+    let strain = strain_v.map(|volts| columns(&volts, STRAIN_COUNT, rate_hz, FRAME_HZ)).transpose()?;
+    let strain = strain.unwrap_or_default();
+    let held = drawn(&held.as_array().to_vec(), rate_hz, FRAME_HZ)?;
     let (mut detector, mut vibration) = (HebbianDetector::default(), VibrationDetector::default());
     if knows.is_some_and(|bytes| !detector.restore(bytes)) {
         return Err(PyValueError::new_err("these are no bytes of a network"));
@@ -240,18 +280,17 @@ pub fn hebbian<'py>(
     let codes = codes.as_array();
     let mut lessons = taught_s.as_array().into_iter().copied().zip(codes.rows()).peekable();
     let (mut sensors, mut told, mut outputs) = (Sensors::default(), Told::default(), Vec::new());
-    for frame in 0..films[0].len() / SCANS_PER_FRAME {
-        let (scans, time_s) = (frame * SCANS_PER_FRAME..(frame + 1) * SCANS_PER_FRAME, frame_s(frame));
-        let is_held = held[scans.start] >= 0.5;
+    for (frame, held) in held.into_iter().enumerate().take(films[0].len()) {
+        let (time_s, is_held) = (frame_s(frame), held >= 0.5);
         while let Some((_, row)) = lessons.next_if(|(at_s, _)| *at_s <= time_s) {
             let code = |n: usize| Code::from_sign(row.get(n).map_or(0, |code| code.signum() as i32));
             detector.teach(&config.hebbian, [code(0), code(1)], 0);
         }
-        sensors.vibration = vibration.process(&config.vibration, &samples(&films, 0, scans.clone()), None);
+        sensors.vibration = vibration.process(&config.vibration, &samples(&films, PVDF, frame), None);
         sensors.envelopes = *vibration.envelopes();
         let gauge = frame % SLOTS;
         if gauge < strain.len() {
-            let read: [u16; PVDF_COUNT] = samples(&strain, tenax_hal_shim::channel::STRAIN, scans);
+            let read: [u16; STRAIN_COUNT] = samples(&strain, STRAIN, frame);
             sensors.strain.read(gauge, read[gauge], !is_held);
         }
         let said = detector.step(&config.hebbian, &sensors.sensed(frame as u32, None, is_held));

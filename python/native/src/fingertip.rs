@@ -28,6 +28,21 @@ type Told<'py> = (Bound<'py, PyDict>, Bound<'py, PyDict>, Vec<(f64, String)>);
 /// Settings by name, as `tenax config` writes them.
 pub type Settings = Vec<(String, i32)>;
 
+/// Fails if a setting is none or out of its range.
+pub fn config(settings: &Settings) -> PyResult<Config> {
+    let mut config = Config::default();
+    for (name, value) in settings {
+        let id = SettingId::by_name(name).ok_or_else(|| {
+            PyValueError::new_err(format!("no setting is called {name}: tenax.SETTINGS has them"))
+        })?;
+        config.set(id, *value).map_err(|range| {
+            let (least, most) = range.into_inner();
+            PyValueError::new_err(format!("{name} = {value}: it may be {least} to {most}"))
+        })?;
+    }
+    Ok(config)
+}
+
 /// A plant at a board whose flash holds these settings.
 pub struct Set<P> {
     pub plant: P,
@@ -35,22 +50,9 @@ pub struct Set<P> {
 }
 
 impl<P: Plant> Set<P> {
-    /// Fails if a setting is none or out of its range.
     pub fn new(plant: P, settings: &Settings) -> PyResult<Self> {
-        let mut config = Config::default();
-        let _in_range = config.set(SettingId::LineTrusted, plant.trusts_line().into());
-        for (name, value) in settings {
-            let id = SettingId::by_name(name).ok_or_else(|| {
-                PyValueError::new_err(format!("no setting is called {name}: tenax.SETTINGS has them"))
-            })?;
-            config.set(id, *value).map_err(|range| {
-                PyValueError::new_err(format!(
-                    "{name} = {value}: it may be {} to {}",
-                    range.start(),
-                    range.end()
-                ))
-            })?;
-        }
+        let mut config = config(settings)?;
+        config.line_trusted |= plant.trusts_line();
         let settings = (!settings.is_empty()).then(|| payload::of_settings(&config).to_vec());
         Ok(Self { plant, settings })
     }

@@ -98,5 +98,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(detect::s2, module)?)?;
     module.add_function(wrap_pyfunction!(detect::hebbian, module)?)?;
     module.add_function(wrap_pyfunction!(detect::mlp, module)?)?;
+    module.add_function(wrap_pyfunction!(detect::photoelastic, module)?)?;
+    module.add_function(wrap_pyfunction!(detect::features, module)?)?;
     Ok(())
 }
