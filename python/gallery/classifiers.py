@@ -71,6 +71,8 @@ unseen, truth = (np.concatenate(part) for part in zip(*score))
 if len(x) > asked.rows:
     kept = np.random.default_rng(1).choice(len(x), asked.rows, replace=False)
     x, y = x[kept], y[kept]
+if asked.dataset is None:
+    print("The scenes are the same with other noise: --dataset has other contacts.")
 # An MLP weighs no classes: rows that slip are repeated until they are half.
 often = np.concatenate([np.flatnonzero(~y), np.resize(np.flatnonzero(y), np.count_nonzero(~y))])
 print(f"{len(x)} rows to learn from, {y.mean():.1%} slip; {len(truth)} rows of other recordings to score on, {truth.mean():.1%} slip")
