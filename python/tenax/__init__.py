@@ -4,6 +4,7 @@
     run, replay           a scene or a recording on the PC's build of the firmware
     grip                  Gymnasium environments, baselines and their scores
     open, decode          a board's line, live; recordings (MCAP), captured lines
+    export                recordings as datasets for LeRobot, and as Parquet files
     fleet                 recordings of many hands
 
 Of what `open` and `decode` give: `message.kind` is the message's name in docs/protocol.md, `message.sequence` its number; `message.time_s` is its

@@ -112,12 +112,13 @@ class Run:
     ticks: 2000 rows a second: time_s, vibration_mv, o1, o2, drive, source, said, believed, acted, mode.
     states: 80 rows a second: time_s, mode, forces (N), ratio, s2, margin_n, muscles (mV), and of each detector DETECTOR_slip, _incipient,
     _confidence, _raw (the number that it compares) and _works. NaN: not known.
-    events: time (s) and words.
+    events: time (s) and words. line: the serial line's bytes, for tenax.decode.
     """
 
     ticks: Table
     states: Table
     events: List[Tuple[float, str]]
+    line: bytes
 
     def says(self, detector: str, column: str = "said") -> NDArray[np.bool_]:
         """Whether a detector is in `said`, `believed` or `acted`, a row a tick."""
@@ -177,8 +178,7 @@ class Fingertip:
         --replay` decides. Columns are called like channels and hold volts, or a recipe (docs/recipes.md: a name or a file) says how they
         reach the pins. `seed` is of the pins' noise."""
         times, columns = _columns(samples, rate_hz)
-        ticks, states, events = self._own.run(times, columns, recipe, seed)
-        return Run(ticks, states, events)
+        return Run(*self._own.run(times, columns, recipe, seed))
 
 
 def pins(samples: Samples, rate_hz: Optional[float] = None, *, recipe: Optional[str] = None, seed: int = 1) -> NDArray[np.float64]:

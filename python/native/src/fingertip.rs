@@ -4,7 +4,7 @@ use numpy::ndarray::Axis;
 use numpy::{PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyBytes, PyDict};
 use tenax_frames::words::words;
 use tenax_hal_shim::channel::{COUNT, SCANS_PER_FRAME};
 use tenax_hal_shim::detector::DetectorSet;
@@ -22,8 +22,8 @@ use tenax_sim::replay::{Recipe, Recording, ReplayPlant};
 use crate::columns::{self, Kept};
 use crate::refused;
 
-/// Columns of ticks and of slow frames; events' times, s, and words.
-type Told<'py> = (Bound<'py, PyDict>, Bound<'py, PyDict>, Vec<(f64, String)>);
+/// Columns of ticks and of slow frames; events' times, s, and words; the line.
+type Told<'py> = (Bound<'py, PyDict>, Bound<'py, PyDict>, Vec<(f64, String)>, Bound<'py, PyBytes>);
 
 /// Settings by name, as `tenax config` writes them.
 pub type Settings = Vec<(String, i32)>;
@@ -174,7 +174,8 @@ impl Fingertip {
         let ticks = columns::ticks(py, (0..ticks.len() as u32).map(at).collect(), &ticks)?;
         let states = kept.slows.iter().map(|slow| at(slow.frame)).collect();
         let states = columns::states(py, states, &kept.slows)?;
-        Ok((ticks, states, events.into_iter().map(|(frame, what)| (at(frame), what)).collect()))
+        let events = events.into_iter().map(|(frame, what)| (at(frame), what)).collect();
+        Ok((ticks, states, events, PyBytes::new(py, &kept.line)))
     }
 }
 
