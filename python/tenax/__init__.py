@@ -1,6 +1,7 @@
 """A fingertip that feels slip: its firmware's logic and worlds, its serial line and its recordings. README.md begins with examples.
 
     Fingertip, detect     the firmware's logic and its detectors on arrays
+    vision                a camera behind a clear skin
     run, replay           a scene or a recording on the PC's build of the firmware
     grip                  Gymnasium environments, baselines and their scores
     open, decode          a board's line, live; recordings (MCAP), captured lines
@@ -23,7 +24,7 @@ import time
 import warnings
 from typing import TYPE_CHECKING, Any, BinaryIO, Dict, Iterable, Iterator, List, Protocol
 
-from . import detect, wire
+from . import detect, vision, wire
 from .clock import Clock
 from .fingertip import *
 from .fingertip import __all__ as _OF_FINGERTIP
@@ -34,7 +35,7 @@ if TYPE_CHECKING:
 
     from . import messages
 
-__all__ = ["Board", "Columns", "Garbled", "MV", "array", "decode", "detect", "open", "seconds", "states", "ticks", *_OF_FINGERTIP]
+__all__ = ["Board", "Columns", "Garbled", "MV", "array", "decode", "detect", "open", "seconds", "states", "ticks", "vision", *_OF_FINGERTIP]
 
 FRAME_MAX = 512
 _OPENED = itertools.count()

@@ -1,4 +1,4 @@
-from typing import Dict, Final, List, Optional, Sequence, Tuple, final
+from typing import Any, Dict, Final, List, Optional, Sequence, Tuple, final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,7 +9,7 @@ _Settings = Sequence[Tuple[str, int]]
 _Columns = Sequence[Tuple[str, _Floats]]
 
 __all__ = [
-    "CHANNELS", "DETECTORS", "FAMILIES", "Fingertip", "MODES", "OBSERVED", "REST_V", "SOURCES", "World", "drawn", "features", "hebbian", "mlp",
+    "CHANNELS", "Camera", "DETECTORS", "FAMILIES", "Fingertip", "MODES", "OBSERVED", "REST_V", "SOURCES", "Skin", "World", "drawn", "features", "hebbian", "mlp",
     "photoelastic", "pins", "replay", "run", "s1", "s2", "scenes", "settings",
 ]
 
@@ -61,3 +61,15 @@ class World:
     def name(self) -> str: ...
     @property
     def duration_s(self) -> float: ...
+
+@final
+class Camera:
+    def __new__(cls, focal_px: float) -> Camera: ...
+    def picture(self, picture: NDArray[np.uint8], learn: bool, taken_ms: int) -> Dict[str, Any]: ...
+    def markers(self) -> NDArray[np.float32]: ...
+    def object(self) -> NDArray[np.bool_]: ...
+
+@final
+class Skin:
+    def __new__(cls, seed: int, rate_hz: float) -> Skin: ...
+    def picture(self) -> Optional[Tuple[NDArray[np.uint8], float, bool, bool]]: ...

@@ -3,6 +3,7 @@
 mod columns;
 mod detect;
 mod fingertip;
+mod vision;
 mod world;
 
 use std::path::Path;
@@ -88,6 +89,8 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("OBSERVED", world::observed())?;
     module.add_class::<fingertip::Fingertip>()?;
     module.add_class::<world::World>()?;
+    module.add_class::<vision::Camera>()?;
+    module.add_class::<vision::Skin>()?;
     module.add_function(wrap_pyfunction!(settings, module)?)?;
     module.add_function(wrap_pyfunction!(scenes, module)?)?;
     module.add_function(wrap_pyfunction!(drawn, module)?)?;
