@@ -39,7 +39,8 @@ class Grip(gymnasium.Env[Observation, Action]):
     "raw": volts at the pins, shape (330,): twelve films in each of 25 frames, then tenax.CHANNELS[12:].
 
     Reward: minus newton-seconds of grip beyond what holds the object (times `force_weight`), minus millimetres slid (times `slid_weight`),
-    minus `lost_weight` when it is dropped, left behind or broken, which ends the episode.
+    minus `lost_weight` when it is dropped, left behind or broken, which ends the episode unless `ends_when_lost=False`: only then are the scores
+    of a lost object those of `tenax run`, which goes on.
 
     info: time_s, grip_n and needed_n (N), beyond_need_ns and slid_mm in this step, kept; at the end `scores`, as a report of `tenax run`.
 
@@ -51,12 +52,13 @@ class Grip(gymnasium.Env[Observation, Action]):
 
     def __init__(
         self, scene: str = "glass", *, reflex: bool = False, observation: str = "conditioned", frame_skip: int = 1,
-        force_weight: float = 0.1, slid_weight: float = 1.0, lost_weight: float = 100.0, settings: Optional[Mapping[str, int]] = None,
+        force_weight: float = 0.1, slid_weight: float = 1.0, lost_weight: float = 100.0, ends_when_lost: bool = True,
+        settings: Optional[Mapping[str, int]] = None,
     ) -> None:
         if observation not in ("conditioned", "raw"):
             raise ValueError(f"observation is `conditioned` or `raw`, not {observation!r}")
         self.scene, self.reflex, self.frame_skip = scene, reflex, frame_skip
-        self.weights = force_weight, slid_weight, lost_weight
+        self.weights, self.ends_when_lost = (force_weight, slid_weight, lost_weight), ends_when_lost
         self.settings = list((settings or {}).items())
         self.is_raw = observation == "raw"
         self.action_space = spaces.Box(-1.0, 1.0, (1,), np.float32)
@@ -64,7 +66,7 @@ class Grip(gymnasium.Env[Observation, Action]):
         low, high = (np.zeros(330, np.float32), np.full(330, 3.3, np.float32)) if self.is_raw else (bounds[:, 0], bounds[:, 1])
         self.observation_space = spaces.Box(low, high, dtype=np.float32)
         self.world: Optional[_native.World] = None
-        self._before = (0.0, 0.0)
+        self._before = (0.0, 0.0, True)
 
     def _made(self, seed: Optional[int], options: Mapping[str, Any]) -> _native.World:
         noise = int(self.np_random.integers(1, 2**31)) if seed is None else seed
@@ -73,7 +75,7 @@ class Grip(gymnasium.Env[Observation, Action]):
     def reset(self, *, seed: Optional[int] = None, options: Optional[Dict[str, Any]] = None) -> Tuple[Observation, Dict[str, Any]]:
         super().reset(seed=seed)
         self.world = self._made(seed, options or {})
-        self._before = (0.0, 0.0)
+        self._before = (0.0, 0.0, True)
         return self._observation(self.world), {"world": self.world.name, "duration_s": self.world.duration_s}
 
     def step(self, action: Action) -> Tuple[Observation, SupportsFloat, bool, bool, Dict[str, Any]]:
@@ -82,15 +84,16 @@ class Grip(gymnasium.Env[Observation, Action]):
         goes_on = self.world.step(float(np.asarray(action).reshape(-1)[0]), self.frame_skip)
         time_s, beyond_ns, slid_mm, grip_n, needed_n, kept = self.world.truth()
         step_ns, step_mm = beyond_ns - self._before[0], slid_mm - self._before[1]
-        self._before = (beyond_ns, slid_mm)
         force, slid, lost = self.weights
-        reward = -force * step_ns - slid * step_mm - (0.0 if kept else lost)
+        reward = -force * step_ns - slid * step_mm - (lost if self._before[2] and not kept else 0.0)
+        self._before = (beyond_ns, slid_mm, kept)
+        terminated = not kept and self.ends_when_lost
         info: Dict[str, Any] = {
             "time_s": time_s, "grip_n": grip_n, "needed_n": needed_n, "beyond_need_ns": step_ns, "slid_mm": step_mm, "kept": kept,
         }
-        if not goes_on or not kept:
+        if terminated or not goes_on:
             info["scores"] = self.world.scores()
-        return self._observation(self.world), reward, not kept, not goes_on, info
+        return self._observation(self.world), reward, terminated, not goes_on, info
 
     def _observation(self, world: _native.World) -> Observation:
         box = self.observation_space
@@ -191,9 +194,9 @@ def main(arguments: Optional[Sequence[str]] = None) -> int:
     first, _, last = asked.seeds.partition("..")
     seeds = range(int(first), int(last or first) + 1)
     if asked.drawn is None:
-        rows = table(lambda reflex: Grip(asked.scene, reflex=reflex), seeds)
+        rows = table(lambda reflex: Grip(asked.scene, reflex=reflex, ends_when_lost=False), seeds)
     else:
-        rows = table(lambda reflex: DrawnGrip(worlds=asked.drawn, family=asked.family, reflex=reflex), seeds)
+        rows = table(lambda reflex: DrawnGrip(worlds=asked.drawn, family=asked.family, reflex=reflex, ends_when_lost=False), seeds)
     columns = ("kept", "slid_mm", "peak_n", "mean_n", "beyond_need_n", "reward")
     print(f"{'policy':<16}{'seed':>8}" + "".join(f"{name:>15}" for name in columns))
     for name in BASELINES:

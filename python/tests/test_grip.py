@@ -61,13 +61,14 @@ class Scores(unittest.TestCase):
         self.assertEqual(told["needed_n"], report["grip"]["needed_force_n"], (scene, seed))
 
     def test_the_reflex_is_that_of_run(self) -> None:
-        for scene, seeds in (("glass", (1, 2)), ("can", (1, 3)), ("arm-swing", (2,)), ("knocks", (1,)), ("gripper", (1,))):
-            env = grip.Grip(scene, reflex=True)
+        scenes = ("glass", (1, 2)), ("can", (1, 3)), ("arm-swing", (2,)), ("gripper", (1,)), ("gripper-control", (1,)), ("pick-up-trial", (1, 2))
+        for scene, seeds in scenes:
+            env = grip.Grip(scene, reflex=True, ends_when_lost=False)
             for seed in seeds:
                 self.reported(scene, seed, grip.play(env, grip.do_nothing, seed))
 
     def test_the_reflex_in_drawn_worlds_is_that_of_run(self) -> None:
-        env = grip.DrawnGrip(worlds=2, reflex=True)
+        env = grip.DrawnGrip(worlds=2, reflex=True, ends_when_lost=False)
         with tempfile.TemporaryDirectory() as folder:
             for n in range(len(tenax.FAMILIES)):
                 text, noise = tenax.drawn(2, n)
@@ -80,6 +81,10 @@ class Scores(unittest.TestCase):
         reflex, nothing = rows["reflex"], rows["do nothing"]
         self.assertEqual((reflex["kept"], nothing["kept"]), (True, False))
         self.assertGreater(reflex["reward"], nothing["reward"])
+
+    def test_a_loss_costs_once(self) -> None:
+        short, whole = grip.Grip(slid_weight=0.0, force_weight=0.0), grip.Grip(slid_weight=0.0, force_weight=0.0, ends_when_lost=False)
+        self.assertEqual([grip.play(env, grip.do_nothing, 1)["reward"] for env in (short, whole)], [-100.0, -100.0])
 
     def test_the_wearer_comes_first(self) -> None:
         env = grip.Grip("glass")
