@@ -41,6 +41,10 @@ impl Journal {
         }
     }
 
+    pub fn last_tick(&self) -> Option<TickRecord> {
+        self.ticks.get(self.frame as usize % self.ticks.len()).copied()
+    }
+
     /// Ticks of the slow frame, and the checksum ([`SamplesSum`]) of their samples.
     pub fn take_slow(&mut self) -> ([TickRecord; FRAMES_PER_SLOW_FRAME as usize], u32) {
         (self.ticks, self.samples.take())

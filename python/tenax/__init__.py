@@ -1,8 +1,17 @@
-"""Reads a Tenax fingertip's serial line, its recordings (MCAP) and captured lines. README.md begins with examples.
+"""A fingertip that feels slip: its firmware's logic and worlds, its serial line and its recordings. README.md begins with examples.
 
-`message.kind` is the message's name in docs/protocol.md, `message.sequence` its number; `message.time_s` is its time in the file, which goes
-on when the board starts again, `message.host_s` when it came, s since 1970 (None in a captured line). `board.missed` counts the numbers that
-are missing, `board.bad` the frames that were no message, `board.restarts` the board's starts after the first. Types of all messages: messages.pyi.
+    Fingertip, detect     the firmware's logic and its detectors on arrays
+    vision                a camera behind a clear skin
+    run, replay           a scene or a recording on the PC's build of the firmware
+    grip                  Gymnasium environments, baselines and their scores
+    open, decode          a board's line, live; recordings (MCAP), captured lines
+    export                recordings as datasets for LeRobot, and as Parquet files
+    fleet                 recordings of many hands
+
+Of what `open` and `decode` give: `message.kind` is the message's name in docs/protocol.md, `message.sequence` its number; `message.time_s` is its
+time in the file, which goes on when the board starts again, `message.host_s` when it came, s since 1970 (None in a captured line).
+`board.missed` counts the numbers that are missing, `board.bad` the frames that were no message, `board.restarts` the board's starts after
+the first. Types of all messages: messages.pyi.
 """
 
 from __future__ import annotations
@@ -13,10 +22,12 @@ import os
 import socket
 import time
 import warnings
-from typing import TYPE_CHECKING, Any, Dict, Iterable, Iterator, List, Protocol
+from typing import TYPE_CHECKING, Any, BinaryIO, Dict, Iterable, Iterator, List, Protocol
 
-from . import wire
+from . import detect, vision, wire
 from .clock import Clock
+from .fingertip import *
+from .fingertip import __all__ as _OF_FINGERTIP
 from .wire import BAUD, FRAME_HZ, Garbled
 
 if TYPE_CHECKING:
@@ -24,7 +35,7 @@ if TYPE_CHECKING:
 
     from . import messages
 
-__all__ = ["Board", "Columns", "Garbled", "MV", "array", "open", "seconds", "states", "ticks"]
+__all__ = ["Board", "Columns", "Garbled", "MV", "array", "decode", "detect", "open", "seconds", "states", "ticks", "vision", *_OF_FINGERTIP]
 
 FRAME_MAX = 512
 _OPENED = itertools.count()
@@ -125,8 +136,8 @@ class _File:
     # When the bytes that were read last came, ns since 1970.
     came_ns: int | None = None
 
-    def __init__(self, path: str) -> None:
-        self.file = io.open(path, "rb")
+    def __init__(self, file: BinaryIO) -> None:
+        self.file = file
 
     def read(self) -> bytes:
         data = self.file.read(4096)
@@ -147,8 +158,9 @@ class _Recording(_File):
     def __init__(self, path: str) -> None:
         from mcap.stream_reader import StreamReader
 
-        super().__init__(path)
-        self.path, self.records, self.topic = path, StreamReader(self.file).records, None
+        super().__init__(io.open(path, "rb"))
+        self.path, self.records = path, StreamReader(self.file).records
+        self.topic: int | None = None
         self.truncated = False
 
     def read(self) -> bytes:
@@ -228,10 +240,15 @@ def open(place: str | os.PathLike[str]) -> Board:
     if place.lower().endswith(".mcap"):
         return Board(_Recording(place))
     if os.path.isfile(place):
-        return Board(_File(place))
+        return Board(_File(io.open(place, "rb")))
     if os.path.realpath(place).startswith("/dev/pts/"):
         return Board(_Terminal(place))
     return Board(_Serial(place))
+
+
+def decode(line: bytes) -> list[messages.Up]:
+    """The messages in a line's bytes."""
+    return list(Board(_File(io.BytesIO(line))))
 
 
 class Board:

@@ -112,8 +112,8 @@ def counted(lazy: pl.LazyFrame) -> tuple[pl.DataFrame, dict[str, pl.DataFrame]]:
         return rows.filter(pl.col(of).is_not_null()).group_by(*keys, value=(pl.col(of) / step).round() * step).len("times")
 
     margin, quiet = histogram(held, "margin_n", STEP_N), histogram(held.filter(pl.col("mode") == "Watch"), "vibration_mv", STEP_MV)
-    sums, margin, quiet = pl.collect_all([sums, margin, quiet], engine="streaming")
-    return sums, {"margin_n": margin, "quiet_mv": quiet}
+    of_days, margins, quiets = pl.collect_all([sums, margin, quiet], engine="streaming")
+    return of_days, {"margin_n": margins, "quiet_mv": quiets}
 
 
 def quantiles(histogram: pl.DataFrame, keys: list[str], **wanted: float) -> pl.DataFrame:
@@ -151,7 +151,7 @@ def settings(store: Path, quantile: float) -> str:
     quiet = hands["quiet_mv_p99"].drop_nulls()
     if quiet.is_empty():
         raise SystemExit(f"{store}: no hand held anything quietly")
-    quiet_mv = float(quiet.quantile(quantile, "higher"))
+    quiet_mv = float(quiet.quantile(quantile, "higher") or 0.0)
     s1_mv = round(min(max(S1_MV, ABOVE_QUIET * quiet_mv), S1_MOST_MV))
     loud = [hand for hand, mv in hands.select("hand", "quiet_mv_p99").rows() if mv is not None and ABOVE_QUIET * mv > s1_mv]
     return (

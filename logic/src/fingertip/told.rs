@@ -3,7 +3,7 @@
 use tenax_hal_shim::channel::PVDF_COUNT;
 use tenax_hal_shim::detector::DetectorSet;
 use tenax_hal_shim::motor::Duty;
-use tenax_hal_shim::wire::{Event, Forces, NetworkState, Slow};
+use tenax_hal_shim::wire::{Event, Forces, NetworkState, Slow, TickRecord};
 use tenax_hal_shim::words::GripMode;
 
 use super::Fingertip;
@@ -36,6 +36,10 @@ impl Fingertip {
 
     pub const fn frame(&self) -> u32 {
         self.journal.frame()
+    }
+
+    pub fn last_tick(&self) -> Option<TickRecord> {
+        self.journal.last_tick()
     }
 
     /// Vibration envelopes, samples (14 bits).

@@ -14,6 +14,8 @@ use tenax_hal_shim::frame::{Frame, Scan, scan_of_pins};
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::schedule::{Job, slot_of};
 use tenax_hal_shim::wire::{Answer, Identity, Restored, Up};
+use tenax_logic::device::Device;
+use tenax_logic::fingertip::Fingertip;
 use tenax_scene::plant::Plant;
 
 pub use self::ahead::Ahead;
@@ -62,72 +64,112 @@ fn closed_loop(
     progress: &mut dyn FnMut(f64),
 ) -> Summary {
     let began = Instant::now();
-    let mut frames = frames_in(plant.duration_s());
-    let provision = Provision::of(plant).expect("a plant's wearer is one");
-    let mut device = provision.device();
-    let mut store = Store::new(Sectors::provisioned(&provision));
-    let mut summary = Summary {
-        trusts_line: provision.trusts_line,
-        calibrated: provision.calibrated,
-        ..Summary::default()
-    };
-    let mut up = Uplink::new(&mut summary, recorder);
-    up.post(device.start(Identity::default()));
-    if device.fingertip.config().stream_at_start {
-        for (kept, payload) in provision.records() {
-            up.post(Up::Restored(Restored::of(kept, &payload).expect("it has room for every record")));
-        }
-    }
-    let mut down = Downlink::default();
-    device.fingertip.act_on(match grips {
+    let detectors = match grips {
         Grips::Reflex(detectors) => detectors,
         Grips::Bound | Grips::Constant(_) => DetectorSet::NONE,
-    });
+    };
+    let mut board = Stepper::new(plant, detectors, recorder);
     let mut ahead = Ahead::default();
-    let mut drive = MotorDrive::Coast;
-    for sequence in 0..frames {
-        up.count(down.counters(sequence));
+    for frame in 0..frames_in(plant.duration_s()) {
+        let goes_on = board.frame(plant, recorder, &mut |own, fingertip, plant| match grips {
+            Grips::Reflex(_) => own,
+            Grips::Bound => ahead.drive(own, fingertip, plant.planned()),
+            Grips::Constant(target_n) => ahead.drive(own, fingertip, plant.closing_to(target_n)),
+        });
+        if !goes_on {
+            break;
+        }
+        if frame % PROGRESS_FRAMES == 0 {
+            progress(seconds_of(frame + 1));
+        }
+    }
+    let mut summary = board.end();
+    summary.wall_s = began.elapsed().as_secs_f64();
+    summary
+}
+
+/// The drive of the next frame, by the logic's own.
+pub type Choose<'a> = dyn FnMut(MotorDrive, &Fingertip, &dyn Plant) -> MotorDrive + 'a;
+
+/// The board between two frames.
+pub struct Stepper {
+    pub device: Device,
+    store: Store,
+    up: Uplink,
+    down: Downlink,
+    frames: u32,
+    drive: MotorDrive,
+}
+
+impl Stepper {
+    /// `detectors`: those that the reflex acts on.
+    pub fn new(plant: &dyn Plant, detectors: DetectorSet, recorder: &mut dyn Recorder) -> Self {
+        let provision = Provision::of(plant).expect("a plant's wearer is one");
+        let mut device = provision.device();
+        let summary = Summary {
+            trusts_line: provision.trusts_line,
+            calibrated: provision.calibrated,
+            ..Summary::default()
+        };
+        let mut up = Uplink::new(summary, recorder);
+        up.post(device.start(Identity::default()), recorder);
+        if device.fingertip.config().stream_at_start {
+            for (kept, payload) in provision.records() {
+                let restored = Restored::of(kept, &payload).expect("it has room for every record");
+                up.post(Up::Restored(restored), recorder);
+            }
+        }
+        device.fingertip.act_on(detectors);
+        let store = Store::new(Sectors::provisioned(&provision));
+        Self { device, store, up, down: Downlink::default(), frames: 0, drive: MotorDrive::Coast }
+    }
+
+    /// Goes on by a frame; `choose` has the last word about its drive. False: the board was reset.
+    pub fn frame(
+        &mut self,
+        plant: &mut dyn Plant,
+        recorder: &mut dyn Recorder,
+        choose: &mut Choose<'_>,
+    ) -> bool {
+        let Self { device, store, up, down, .. } = self;
+        let sequence = self.frames;
+        up.count(down.counters(sequence), recorder);
         let select = Frame::lost(sequence).select();
         let mut scans = [Scan::default(); SCANS_PER_FRAME];
         let mut commands = down.opening();
         for scan in &mut scans {
-            *scan = scan_of_pins(&plant.scan(drive).codes(), select);
+            *scan = scan_of_pins(&plant.scan(self.drive).codes(), select);
             commands.extend(plant.commands().into_iter().map(|message| down.number(message)));
             down.take(&plant.line_bytes());
-            up.recorder.scan(scan, drive, plant.slipping());
+            recorder.scan(scan, self.drive, plant.slipping());
         }
         commands.extend(down.command(sequence));
         for command in &commands {
             up.summary.taken.push((sequence, *command));
             if let Some(message) = device.taken(command) {
-                up.post(message);
+                up.post(message, recorder);
             }
             let answer = device.command(command);
             if let Up::Answer { of, answer: Answer::Nonce(nonce), .. } = answer {
                 down.offered(of, nonce);
             }
-            up.post(answer);
+            up.post(answer, recorder);
         }
         device.fingertip.button(plant.button());
         let frame = Frame::from_scans(sequence, &scans);
-        drive = device.tick(&frame);
-        drive = match grips {
-            Grips::Reflex(_) => drive,
-            Grips::Bound => ahead.drive(drive, &device.fingertip, plant.planned()),
-            Grips::Constant(target_n) => ahead.drive(drive, &device.fingertip, plant.closing_to(target_n)),
-        };
+        self.drive = choose(device.tick(&frame), &device.fingertip, plant);
         while let Some(message) = device.next_message() {
-            up.post(message);
+            up.post(message, recorder);
         }
         if let Some(message) = store.end_tick(sequence) {
-            up.post(message);
+            up.post(message, recorder);
         }
         if let Some((kept, payload)) = store.saved() {
             plant.keep(kept, &payload);
         }
+        self.frames += 1;
         if plant.resets() {
-            frames = sequence + 1;
-            break;
+            return false;
         }
         if frame.slot() == slot_of(Job::Save) {
             device.slow_frame_passed();
@@ -140,24 +182,28 @@ fn closed_loop(
                 store.save(record);
             }
         }
-        if sequence % PROGRESS_FRAMES == 0 {
-            progress(seconds_of(sequence + 1));
-        }
+        true
     }
-    summary.counters = down.counters(frames);
-    summary.virtual_s = seconds_of(frames);
-    summary.wall_s = began.elapsed().as_secs_f64();
-    summary
+
+    pub const fn drive(&self) -> MotorDrive {
+        self.drive
+    }
+
+    pub fn end(mut self) -> Summary {
+        self.up.summary.counters = self.down.counters(self.frames);
+        self.up.summary.virtual_s = seconds_of(self.frames);
+        self.up.summary
+    }
 }
 
 /// Frames between two calls of `progress`: a tenth of a virtual second.
 const PROGRESS_FRAMES: u32 = 200;
 
 /// How long so many frames last, s.
-pub(crate) fn seconds_of(frames: u32) -> f64 {
+pub fn seconds_of(frames: u32) -> f64 {
     f64::from(frames) * SCANS_PER_FRAME as f64 / f64::from(SCAN_HZ)
 }
 
-pub(crate) fn frames_in(duration_s: f64) -> u32 {
+pub fn frames_in(duration_s: f64) -> u32 {
     (duration_s * f64::from(SCAN_HZ) / SCANS_PER_FRAME as f64) as u32
 }

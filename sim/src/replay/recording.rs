@@ -39,6 +39,24 @@ impl Recording {
         Self::timed(source, file, &Table::default(), &Time::default())
     }
 
+    /// A table in memory: times, s, and columns of as many values each.
+    pub fn of(file: &str, t_s: Vec<f64>, columns: Vec<(String, Vec<f64>)>) -> Result<Self, CsvError> {
+        let wrong = |what: String| Err(CsvError::File { file: file.to_owned(), what });
+        if t_s.len() < 2 || t_s.last().is_some_and(|last| last - t_s[0] > LONGEST_S) {
+            return wrong(format!("a recording has two rows or more and lasts {LONGEST_S:.0} s at most"));
+        }
+        if !t_s.is_sorted() || columns.iter().any(|(_, values)| values.len() != t_s.len()) {
+            return wrong("times must not go backwards, and every column must have a value for each".into());
+        }
+        let finite = |values: &Vec<f64>| values.iter().all(|value| value.is_finite());
+        if let Some((name, _)) = columns.iter().find(|(_, values)| !finite(values)) {
+            return wrong(format!("column `{name}` has values that are no finite numbers"));
+        }
+        let (columns, signals) = columns.into_iter().map(|(name, values)| (name, Ok(values))).unzip();
+        let table = Table::default();
+        Self { file: file.to_owned(), columns, table, time: None, t_s, equal_stamps: 0, signals }.spread()
+    }
+
     pub fn timed(source: impl Read, file: &str, table: &Table, time: &Time) -> Result<Self, CsvError> {
         let too_short = |rows| {
             let what = format!("{rows} rows of samples; a recording has a header line and at least two rows");

@@ -9,32 +9,31 @@ use tenax_frames::link::Encoder;
 
 const COUNTERS_FRAMES: u32 = FRAME_HZ / 10;
 
-pub struct Uplink<'a> {
+pub struct Uplink {
     encoder: Encoder,
-    pub summary: &'a mut Summary,
-    pub recorder: &'a mut dyn Recorder,
+    pub summary: Summary,
 }
 
-impl<'a> Uplink<'a> {
-    pub fn new(summary: &'a mut Summary, recorder: &'a mut dyn Recorder) -> Self {
-        let mut uplink = Self { encoder: Encoder::default(), summary, recorder };
+impl Uplink {
+    pub fn new(summary: Summary, recorder: &mut dyn Recorder) -> Self {
+        let mut uplink = Self { encoder: Encoder::default(), summary };
         // The image ends whatever frame a reset may have cut short.
         uplink.summary.line_bytes += 1;
-        uplink.recorder.line(&[0]);
-        uplink.post(Up::Hello { frame_hz: FRAME_HZ as u16, after: None });
+        recorder.line(&[0]);
+        uplink.post(Up::Hello { frame_hz: FRAME_HZ as u16, after: None }, recorder);
         uplink
     }
 
-    pub fn post(&mut self, message: Up) {
+    pub fn post(&mut self, message: Up, recorder: &mut dyn Recorder) {
         let (_, frame) = self.encoder.frame(&message);
         self.summary.line_bytes += frame.len();
-        self.recorder.line(frame);
-        self.summary.take(message, self.recorder);
+        recorder.line(frame);
+        self.summary.take(message, recorder);
     }
 
-    pub fn count(&mut self, counters: Counters) {
+    pub fn count(&mut self, counters: Counters, recorder: &mut dyn Recorder) {
         if counters.frames > 0 && counters.frames.is_multiple_of(COUNTERS_FRAMES) {
-            self.post(Up::Counters(counters));
+            self.post(Up::Counters(counters), recorder);
         }
     }
 }
