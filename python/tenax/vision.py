@@ -25,7 +25,7 @@ class Summary(NamedTuple):
     # Since the picture before, px: moves of the object and of the skin under it, speed between them.
     moves_px: Optional[Tuple[float, float]]
     skin_px: Optional[Tuple[float, float]]
-    slip_px: Optional[float]
+    slip_px_s: Optional[float]
     slips: bool
     # A teacher's codes v1 and v2, for tenax.detect.hebbian.
     codes: Optional[Tuple[int, int]]

@@ -15,7 +15,7 @@ class Drawn(unittest.TestCase):
             told = camera.picture(seen.rgb, seen.taken_s, learn=not seen.gripped)
             if told.markers and told.force is not None:
                 force[seen.gripped].append(told.force[2])
-            if seen.gripped and told.slip_px is not None:
+            if seen.gripped and told.slip_px_s is not None:
                 right[seen.slides].append(told.slips)
         self.assertGreater(len(right[True]), 10)
         self.assertGreater(np.mean(right[True]), 0.6)

@@ -87,7 +87,7 @@ fn told<'py>(py: Python<'py>, summary: &Summary) -> PyResult<Bound<'py, PyDict>>
     table.set_item("object", object)?;
     table.set_item("moves_px", summary.flow.map(|flow| (flow.x, flow.y)))?;
     table.set_item("skin_px", summary.skin_flow.map(|flow| (flow.x, flow.y)))?;
-    table.set_item("slip_px", summary.slip_px())?;
+    table.set_item("slip_px_s", summary.slip_px_s)?;
     table.set_item("slips", summary.slips())?;
     table.set_item("codes", summary.codes())?;
     Ok(table)
