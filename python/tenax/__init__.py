@@ -16,6 +16,7 @@ the first. Types of all messages: messages.pyi.
 
 from __future__ import annotations
 
+import importlib
 import io
 import itertools
 import os
@@ -24,20 +25,34 @@ import time
 import warnings
 from typing import TYPE_CHECKING, Any, BinaryIO, Dict, Iterable, Iterator, List, Protocol
 
-from . import detect, vision, wire
+from . import wire
 from .clock import Clock
-from .fingertip import *
-from .fingertip import __all__ as _OF_FINGERTIP
 from .wire import BAUD, FRAME_HZ, Garbled
 
 if TYPE_CHECKING:
     import numpy
 
-    from . import messages
+    from . import detect, messages, vision
+    from .fingertip import *
 
-__all__ = ["Board", "Columns", "Garbled", "MV", "array", "decode", "detect", "open", "seconds", "states", "ticks", "vision", *_OF_FINGERTIP]
+__all__ = [
+    "Board", "Columns", "Garbled", "MV", "array", "decode", "detect", "open", "seconds", "states", "ticks", "vision", "CHANNELS", "DETECTORS",
+    "FAMILIES", "MODES", "REST_V", "SETTINGS", "SOURCES", "Fingertip", "Report", "Run", "Setting", "Slip", "Tick", "drawn", "names", "pins",
+    "recording", "replay", "run", "scenes",
+]
 
 FRAME_MAX = 512
+
+
+def __getattr__(name: str) -> Any:
+    """The firmware's logic is loaded when it is asked for: lines and recordings are read without it, and without numpy."""
+    if name in ("detect", "vision"):
+        return importlib.import_module("." + name, __name__)
+    if name in __all__:
+        return getattr(importlib.import_module(".fingertip", __name__), name)
+    raise AttributeError(f"module 'tenax' has no attribute {name!r}")
+
+
 _OPENED = itertools.count()
 
 
