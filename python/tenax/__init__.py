@@ -42,6 +42,7 @@ __all__ = [
 ]
 
 FRAME_MAX = 512
+_OPENED = itertools.count()
 
 
 def __getattr__(name: str) -> Any:
@@ -51,9 +52,6 @@ def __getattr__(name: str) -> Any:
     if name in __all__:
         return getattr(importlib.import_module(".fingertip", __name__), name)
     raise AttributeError(f"module 'tenax' has no attribute {name!r}")
-
-
-_OPENED = itertools.count()
 
 
 def seconds(frame: int) -> float:
