@@ -4,7 +4,7 @@
 mod injected;
 
 use heapless::Vec;
-use tenax_hal_shim::channel::{PVDF_COUNT, frames};
+use tenax_hal_shim::channel::PVDF_COUNT;
 use tenax_hal_shim::detector::{DetectorHealth, DetectorId, DetectorSet, Direction, Evidence};
 use tenax_hal_shim::schedule::{Job, slot_of};
 use tenax_hal_shim::wire::{DETECTORS_MAX, Forces};
@@ -74,9 +74,6 @@ pub trait Detector {
     fn describe(&self, config: &Self::Config) -> Description;
 }
 
-/// Time before the array's verdict in which the films must have been loud, or half so, for it to be believed alone:
-/// it looks back on as much.
-const HEARD_WITHIN: u32 = frames(200);
 const OTHERS_GUARDED: u8 = slot_of(Job::Think) + 1;
 
 macro_rules! for_each_detector {
@@ -106,8 +103,6 @@ pub struct Detectors {
     pub injected: Injected,
     photoelastic: PhotoelasticDetector,
     record: Record,
-    /// An object has slid in this grasp.
-    pub has_slid: bool,
 }
 
 #[derive(Clone, Debug, Default)]
@@ -118,10 +113,6 @@ struct Record {
     decided_at: [u32; DetectorId::COUNT],
     guards: [Plausibility; DetectorId::COUNT],
     disturbance: Disturbance,
-    /// The films give no reading.
-    is_deaf: bool,
-    /// Frames since the films were loud as slip, or half so.
-    silent_frames: u32,
 }
 
 impl Record {
@@ -165,9 +156,6 @@ impl Detectors {
                 self.record.note(id_of(detector), said, sensed.frame);
             }
         });
-        self.record.silent_frames =
-            if sensed.vibration.stirs { 0 } else { self.record.silent_frames.saturating_add(1) };
-        self.record.is_deaf = !sensed.vibration_known;
         // The MLP decides once a cycle, and an implausible verdict must not act for a single tick.
         match sensed.slot {
             MLP_DECIDES => self.record.guard_array(sensed),
@@ -202,15 +190,12 @@ impl Detectors {
     }
 
     pub fn credible(&self) -> DetectorSet {
-        let Record { slip, incipient, ignored, .. } = self.record;
-        if self.s2.is_slip_unlikely(self.has_slid) && !by_two_senses(slip.without(ignored)) {
-            return DetectorSet::NONE;
+        let Record { slip, ignored, .. } = self.record;
+        if self.s2.is_slip_unlikely() && !by_two_senses(slip.without(ignored)) {
+            DetectorSet::NONE
+        } else {
+            DetectorSet::ALL.without(ignored)
         }
-        let array = DetectorSet::NONE.with(DetectorId::Mlp, true);
-        let alone = slip.or(incipient).without(ignored) == array && !self.record.is_deaf;
-        let far = alone && self.record.silent_frames >= HEARD_WITHIN;
-        let ignored = if far { ignored.or(array) } else { ignored };
-        DetectorSet::ALL.without(ignored)
     }
 
     #[must_use]

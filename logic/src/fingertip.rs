@@ -28,7 +28,6 @@ use crate::detectors::{Detectors, Said};
 use crate::feedback::Feedback;
 use crate::force::shear_mrad;
 use crate::grip::relax::Reading;
-use crate::grip::slide::Heard;
 use crate::grip::{Grip, Reflex};
 use crate::journal::Journal;
 use crate::mode;
@@ -159,16 +158,16 @@ impl Fingertip {
 
     /// Likewise, of the films.
     pub fn listen(&mut self) {
-        self.senses.listen(&self.config, self.reflex.is_still(), &mut self.journal);
+        self.senses.listen(&self.config, &mut self.journal);
     }
 
     fn feel(&mut self) {
         let held = self.senses.forces.filter(|_| matches!(self.senses.grip, Grip::Holds(_)));
-        let s2 = &self.detectors.s2;
-        let lacks = held.map(|forces| s2.lacks(&self.config.friction, &forces)).unwrap_or_default();
-        self.reflex.feel(self.mode, held.as_ref(), lacks);
-        let slid_permille = self.reflex.slid_permille();
-        self.detectors.has_slid = slid_permille.is_some();
+        let slides = self.reflex.slides(self.mode);
+        let s2 = &mut self.detectors.s2;
+        let lacks = held.map(|forces| s2.lacks(&self.config.friction, &forces, slides)).unwrap_or_default();
+        self.reflex.feel(self.mode, held.map(|forces| forces.load_mn), lacks);
+        let slid_permille = s2.slid_permille();
         let reading = held.map(|Forces { load_mn, ft_mn, .. }| Reading { load_mn, ft_mn, slid_permille });
         self.reflex.relax(self.mode, reading.filter(|_| self.may_relax()).as_ref());
     }
@@ -205,8 +204,12 @@ impl Fingertip {
         } else {
             self.senses.lose(&self.config, frame, &mut self.journal);
         }
+        let duty = match self.drive {
+            MotorDrive::Close(duty) | MotorDrive::Open(duty) => duty.as_per_mille(),
+            MotorDrive::Coast => 0,
+        };
         let moves = mode::closes(self.mode) || self.mode == GripMode::Settle;
-        let sensed = self.senses.sensed(&self.config, frame, self.drive.permille(), moves);
+        let sensed = self.senses.sensed(&self.config, frame, duty, moves);
         self.detectors.step(&self.config, &sensed);
     }
 
@@ -230,12 +233,9 @@ impl Fingertip {
             }
         }
         let verdicts = Verdicts::of(&self.detectors, self.muted.or(self.config.detectors_off));
-        let s1 = DetectorSet::only(DetectorId::S1);
-        let hears = verdicts.slip.contains(DetectorId::S1);
-        let loud = self.senses.vibration.s1;
-        let felt = !verdicts.slip.without(s1).is_empty();
-        let heard = Heard { loud: hears && loud, quiet: hears && !loud, felt };
-        self.reflex.hear(!verdicts.said.is_empty(), heard);
+        if !verdicts.said.is_empty() {
+            self.reflex.hear();
+        }
         let behaviour = match self.behave(verdicts) {
             MotorDrive::Coast
                 if self.reflex.is_relaxing() && self.mode == GripMode::Watch && self.may_relax() =>
@@ -268,10 +268,7 @@ impl Fingertip {
         let driven = source == DriveSource::Wearer;
         let refused = self.reflex.account.step(&self.senses.gate, wishes.wearer, driven);
         self.senses.muscles_mut().refuse(refused);
-        let is_loud = drive.permille() >= self.config.hebbian.loud_duty_permille;
-        if self.reflex.tick(self.mode, grip, is_loud) && verdicts.slip.contains(DetectorId::S1) {
-            self.senses.refute();
-        }
+        self.reflex.tick(self.mode, grip);
         self.took_back |= source == DriveSource::Reflex && drive.opens();
         if let MotorDrive::Close(duty) = drive {
             self.reflex.closes(duty, source == DriveSource::Reflex);
@@ -311,10 +308,7 @@ impl Fingertip {
         self.cause(if taken_over { Cause::TakenOver } else { Cause::Released });
         let may_close = self.reflex.may_close(&config, grip);
         let slips = !verdicts.slip.is_empty();
-        if may_close
-            && self.reflex.may_answer(grip)
-            && let Some(id) = verdicts.slip.first()
-        {
+        if may_close && let Some(id) = verdicts.slip.first() {
             self.cause(Cause::Slip(id));
         }
         if may_close
@@ -351,9 +345,9 @@ impl Fingertip {
     #[inline(never)]
     fn change(&mut self, to: GripMode, cause: Cause) {
         let from = core::mem::replace(&mut self.mode, to);
-        let held = self.senses.forces.as_ref().filter(|_| matches!(self.senses.grip, Grip::Holds(_)));
-        self.reflex.enter(to, self.senses.grip, held.zip(self.detectors.s2.carried()));
+        self.reflex.enter(to, self.senses.grip);
         if to == GripMode::Slip {
+            self.detectors.s2.slips();
             self.feedback.slips();
         }
         if matches!(cause, Cause::Incipient(DetectorId::S2)) {

@@ -35,12 +35,8 @@ pub enum Trust {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Vibration {
     pub level: u16,
-    /// Above two fifths of the threshold, or above the films' own floors.
-    pub stirs: bool,
     /// Above the threshold, and no impact.
     pub s1: bool,
-    /// Below it, but far above each film's own floor.
-    pub quiet_slip: bool,
     /// Rings above the slip band, and not for longer than an impact.
     pub impact: bool,
     pub slides: bool,
@@ -174,9 +170,7 @@ impl VibrationDetector {
         self.s1 = loud && (self.s1 || !impact || lasts);
         Vibration {
             level: (envelope >> Q).clamp(0, i32::from(TickRecord::VIBRATION_MAX)) as u16,
-            stirs: envelope >= on / 5 * 2 || self.sliding.stirs,
             s1: self.s1,
-            quiet_slip: self.sliding.slips,
             impact: rings && self.ringing_frames < config.impact_frames,
             slides: self.slides,
             masked: self.noise.noisy,
@@ -190,14 +184,8 @@ impl VibrationDetector {
         self.mains.tune(config.mains_60_hz ^ self.noise.other_mains);
     }
 
-    pub fn slow(&mut self, hand: Hand) {
-        self.slides = self.sliding.step(&self.envelopes, self.above, &Hand { loud: self.s1, ..hand });
-    }
-
-    /// What the films hear is no slip.
-    pub fn refute(&mut self) {
-        self.sliding.refute(&self.envelopes);
-        self.noise.refute(&self.envelopes);
+    pub fn slow(&mut self, hand: &Hand) {
+        self.slides = self.sliding.step(&self.envelopes, self.above, hand);
     }
 
     /// Envelopes in the slip band, Q16 samples; 0 of a film without a number.
