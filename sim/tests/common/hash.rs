@@ -35,20 +35,7 @@ impl fmt::Display for Hash {
 
 pub fn of_run(run: &Run) -> Hash {
     let mut hash = Hash(0xcbf2_9ce4_8422_2325);
-    for slow in &run.slows {
-        // All but the direction of the shear, which follows from the forces.
-        let forces = (slow.frame, &slow.ticks, slow.mode, slow.forces);
-        let senses = (slow.s2_permille, slow.flexor_mv, slow.extensor_mv, slow.wearer_active);
-        hash.message(&(
-            forces,
-            senses,
-            slow.lesson,
-            &slow.evidence,
-            slow.samples_sum,
-            slow.line,
-            slow.behaviour,
-        ));
-    }
+    run.slows.iter().for_each(|slow| hash.message(slow));
     run.events.iter().for_each(|event| hash.message(event));
     run.drives.iter().for_each(|drive| hash.message(drive));
     run.feedback.iter().for_each(|feedback| hash.message(feedback));
