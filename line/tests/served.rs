@@ -19,8 +19,8 @@ use crate::serving::calm;
 
 const WITHIN: Duration = Duration::from_secs(5);
 
-/// A hand at rest, and for how long, s.
-struct Rest(Pins, f64);
+/// A hand at rest, for how long, s, and whether it trusts its line.
+struct Rest(Pins, f64, bool);
 
 impl Plant for Rest {
     fn scan(&mut self, _drive: MotorDrive) -> &Pins {
@@ -30,10 +30,14 @@ impl Plant for Rest {
     fn duration_s(&self) -> f64 {
         self.1
     }
+
+    fn trusts_line(&self) -> bool {
+        self.2
+    }
 }
 
 /// Serves a hand at rest on a pseudo-terminal and on TCP, while `visit` is told where.
-fn serve(options: Options, duration_s: f64, visit: impl FnOnce(&[Target]) + Send) -> (Run, Tally) {
+fn serve(options: Options, rest: Rest, visit: impl FnOnce(&[Target]) + Send) -> (Run, Tally) {
     let _calm = calm();
     let options = Options { pty: true, tcp: Some(0), ..options };
     let (mut server, down) = Server::start(&options).expect("this machine has ptys and free ports");
@@ -42,7 +46,8 @@ fn serve(options: Options, duration_s: f64, visit: impl FnOnce(&[Target]) + Send
         let visitor = scope.spawn(move || visit(&places));
         let mut run = Run::default();
         let live = Some(Live::new(down, Person::default()));
-        let plant = Use { live, ..Use::default() }.of(Rest(Pins::default(), duration_s));
+        let duration_s = rest.duration_s();
+        let plant = Use { live, ..Use::default() }.of(rest);
         let began = Instant::now();
         run.summary = Board::Host.record(plant, &mut (&mut run, &mut server), &mut |_| {}).expect("a run").0;
         assert!(began.elapsed().as_secs_f64() > duration_s - 0.01, "never faster than real time");
@@ -89,29 +94,32 @@ fn set_and_read_back(target: &Target, mv: i32) {
     all_heard(&client);
 }
 
+/// Consent ends 10 s after a board's start: one client has the time for it on any machine.
 #[test]
 fn a_setting_is_set_and_read_back_on_a_pty_on_its_symlink_and_on_tcp() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path().join("board");
-    let options = Options { at: Some(at.clone()), ..Options::default() };
-    let (run, tally) = serve(options, 12.0, |places| {
-        assert_eq!(places.len(), 3);
-        for (target, mv) in places.iter().zip([120, 130, 140]) {
-            set_and_read_back(target, mv);
-            // A pty takes a client that comes within 10 ms of the one before for the same.
-            thread::sleep(Duration::from_millis(100));
-        }
-    });
-    // Four commands each, and the session that the first asked for: a refusal, its number, its opening.
-    assert_eq!(run.answers.len(), 3 * 7);
-    assert_eq!(tally, Tally { clients: 3, dropped: 0 });
-    assert!(std::fs::symlink_metadata(&at).is_err(), "the symlink is gone");
+    // Four commands each, and a session (refusal, number, opening): without trust, or where another client's numbers are ahead.
+    for (trusts, clients, answers) in [(false, 1, 7..=7), (true, 3, 12..=18)] {
+        let options = Options { at: Some(at.clone()), ..Options::default() };
+        let (run, tally) = serve(options, Rest(Pins::default(), 12.0, trusts), |places| {
+            assert_eq!(places.len(), 3);
+            for (target, mv) in places.iter().zip([120, 130, 140]).take(clients) {
+                set_and_read_back(target, mv);
+                // A pty takes a client that comes within 10 ms of the one before for the same.
+                thread::sleep(Duration::from_millis(100));
+            }
+        });
+        assert!(answers.contains(&run.answers.len()), "{:?}", run.answers);
+        assert_eq!(tally, Tally { clients: clients as u64, dropped: 0 });
+        assert!(std::fs::symlink_metadata(&at).is_err(), "the symlink is gone");
+    }
 }
 
 /// No writer of the client before is left to double what the next one hears. Thirty take 5 s, on a busy machine twice as long.
 #[test]
 fn clients_that_follow_each_other_at_once_hear_everything_once() {
-    let (run, _) = serve(Options::default(), 20.0, |places| {
+    let (run, _) = serve(Options::default(), Rest(Pins::default(), 20.0, false), |places| {
         for wait_ms in (0..30).map(|n| 11 + n % 5) {
             let mut client = Client::open(&places[0]).unwrap();
             listen(&mut client, Duration::from_millis(150));
@@ -150,7 +158,7 @@ fn a_client_that_never_reads_holds_up_nothing() {
 /// A witness on TCP tells how far the run was when the silent client of the pseudo-terminal left: a loaded machine runs behind the clock.
 #[test]
 fn clients_that_come_and_go_or_never_read_change_nothing_and_the_next_hears_nothing_old() {
-    let (run, tally) = serve(Options::default(), 3.0, |places| {
+    let (run, tally) = serve(Options::default(), Rest(Pins::default(), 3.0, false), |places| {
         let mut witness = Client::open(&places[1]).unwrap();
         let _silent = places[1].open().unwrap();
         let gone = places[0].open().unwrap();
@@ -162,7 +170,7 @@ fn clients_that_come_and_go_or_never_read_change_nothing_and_the_next_hears_noth
         assert!(heard.iter().all(|slow| slow.frame > seen), "{seen}");
         all_heard(&client);
     });
-    let (alone, _) = Board::Host.run(Rest(Pins::default(), 3.0), &mut |_| {}).unwrap();
+    let (alone, _) = Board::Host.run(Rest(Pins::default(), 3.0, false), &mut |_| {}).unwrap();
     assert!(run.slows == alone.slows);
     assert_eq!((run.events.clone(), run.counters), (alone.events.clone(), alone.counters));
     assert_eq!(tally.clients, 4);
