@@ -13,7 +13,7 @@ use tenax_hal_shim::wire::Forces;
 use tenax_hal_shim::words::Code;
 use tenax_logic::array::shipped::MODEL;
 use tenax_logic::array::taxels::Taxels;
-use tenax_logic::array::{FEATURES, Preprocessor, Reading, ShippedDetector};
+use tenax_logic::array::{FEATURES, Preprocessor, PreprocessorConfig, Reading, ShippedDetector};
 use tenax_logic::config::Config;
 use tenax_logic::detectors::{Detector, Said, Sensed};
 use tenax_logic::force::FrictionDetector;
@@ -201,15 +201,22 @@ fn readings(taxels_v: &[Vec<f64>]) -> impl Iterator<Item = Reading> {
     })
 }
 
-/// Features of taxels' volts, as the firmware's network gets them, a row a slow frame; 0 until the windows are full.
+/// Features of taxels' volts, as the firmware's network gets them, a row a slow frame; 0 until the windows are full. `others`: a lag, and
+/// the knees of covariances, bins and structure functions, in place of the shipped network's.
 #[pyfunction]
+#[pyo3(signature = (volts, rate_hz, others=None))]
 pub fn features<'py>(
     py: Python<'py>,
     volts: PyReadonlyArray2<'py, f64>,
     rate_hz: f64,
+    others: Option<(u8, u32, u32, u32)>,
 ) -> PyResult<Bound<'py, PyArray2<i16>>> {
     let taxels_v = columns(&volts, ARRAY_COUNT, rate_hz, SLOW_HZ)?;
-    let mut preprocessor = Preprocessor::new(MODEL.preprocessor);
+    let mut config = MODEL.preprocessor;
+    if let Some((lag, covariance_knee, spectrum_knee, structure_knee)) = others {
+        config = PreprocessorConfig { lag, covariance_knee, spectrum_knee, structure_knee, ..config };
+    }
+    let mut preprocessor = Preprocessor::new(config);
     let rows: Vec<Vec<i16>> = readings(&taxels_v)
         .map(|reading| preprocessor.push(&reading).map_or(vec![0; FEATURES], |features| features.to_vec()))
         .collect();
