@@ -25,6 +25,8 @@ from numpy.typing import NDArray
 
 import tenax
 
+from .wire import FRAME_HZ
+
 FPS, FRAMES = 80, 25
 STATE = ("fn_n", "load_n", "fx_n", "fy_n", "ft_n", "ratio", "s2", "flexor_mv", "extensor_mv", "wearer_active", "force_known")
 # Kind, shape and names of each column.
@@ -160,17 +162,17 @@ def to_rerun(messages: Iterable[Any], file: Union[str, "os.PathLike[str]"], pict
     import rerun as rr
 
     messages = list(messages)
-    series: List[Tuple[str, Any, Any]] = []
+    series: List[Tuple[str, List[float], List[float]]] = []
     states, ticks = tenax.states(messages), tenax.ticks(messages)
     for columns, folder in ((states, "senses"), (ticks, "ticks")):
         for name in columns.keys() - {"time_s", "mode", "source", "said", "believed", "acted"}:
             known = [n for n, value in enumerate(columns[name]) if value is not None]
             series.append((f"{folder}/{name}", [columns["time_s"][n] for n in known], [float(columns[name][n]) for n in known]))
-    for place, detector in enumerate(tenax.DETECTORS):
+    for bit, detector in enumerate(tenax.DETECTORS):
         for word in ("said", "believed", "acted"):
-            series.append((f"detectors/{detector}/{word}", ticks["time_s"], [float(own >> place & 1) for own in ticks[word]]))
+            series.append((f"detectors/{detector}/{word}", ticks["time_s"], [float(own >> bit & 1) for own in ticks[word]]))
     raws = [message for message in messages if message.kind == "Raw"]
-    valid = [(raw.time_s - (len(raw.frames) - 1 - n) / tenax.FRAME_HZ, frame) for raw in raws for n, frame in enumerate(raw.frames) if frame.valid]
+    valid = [(raw.time_s - (len(raw.frames) - 1 - n) / FRAME_HZ, frame) for raw in raws for n, frame in enumerate(raw.frames) if frame.valid]
     for film in range(12):
         series.append((f"films/{film + 1}", [time_s for time_s, _ in valid], [frame.films[film] * tenax.MV / 1000 for _, frame in valid]))
     words = [(message.time_s, " ".join(map(str, vars(message.kind_).values()))) for message in messages if message.kind == "Event"]
@@ -178,7 +180,7 @@ def to_rerun(messages: Iterable[Any], file: Union[str, "os.PathLike[str]"], pict
     texts = {"events": words, "mode": [(states["time_s"][n], states["mode"][n]) for n in changes]}
 
     stream = rr.RecordingStream("tenax")
-    stream.save(file)
+    stream.save(Path(file))
     for place, times, values in series:
         if values:
             stream.send_columns(place, [rr.TimeColumn("time", duration=times)], rr.Scalars.columns(scalars=values))

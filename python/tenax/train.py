@@ -33,6 +33,7 @@ from sklearn.neural_network import MLPClassifier
 from sklearn.pipeline import make_pipeline
 from sklearn.preprocessing import StandardScaler
 from sklearn.svm import SVC
+from threadpoolctl import threadpool_limits
 
 from . import MV, _native
 
@@ -420,6 +421,12 @@ def steps_of(path: Path, recipe_name: Optional[str]) -> Tuple[List[Steps], Recip
 
 def train(path: Path, recipe_name: Optional[str] = None, seed: int = 1, at_most: int = 20_000) -> Tuple[Dict[str, Any], Dict[str, Any]]:
     """The tables of the better of network and linear model (network.json), and a report. Fails if there is too little to choose by."""
+    # The matrices are small: a second thread costs more than it saves, and with one nothing depends on which is first.
+    with threadpool_limits(1):
+        return _train(path, recipe_name, seed, at_most)
+
+
+def _train(path: Path, recipe_name: Optional[str], seed: int, at_most: int) -> Tuple[Dict[str, Any], Dict[str, Any]]:
     sequences, recipe, noise = steps_of(path, recipe_name)
     learned = [own for own in sequences if own.part in (None, "train")]
     rows, slips = rows_of(learned)

@@ -133,7 +133,8 @@ class Trained(unittest.TestCase):
         if not REAL.exists():
             self.skipTest("recordings not present")
         basic, solids = (train.steps_of(REAL / f"array_biotac_sp_{name}.csv", None)[0] for name in ("basic", "solids"))
-        choice, _ = train.choose(basic, seed=1)
+        with train.threadpool_limits(1):
+            choice, _ = train.choose(basic, seed=1)
         rows, slips = train.rows_of(solids)
         says = choice.network.logits(rows) > choice.threshold
         right = (np.mean(says[slips]) + np.mean(~says[~slips])) / 2
