@@ -51,5 +51,5 @@ for place, key in ((0.2, "auc"), (-0.2, "balanced")):
     axes.barh([n + place for n in range(len(scores))], [score[key] for score in scores.values()], height=0.4, label=key)
 axes.set(yticks=range(len(scores)), yticklabels=list(scores), xlim=(0.4, 1.0), xlabel="in recordings that it has not seen: area under the ROC curve, and balanced accuracy")
 axes.axvline(0.5, color="grey", linestyle="--")
-axes.legend()
+figure.legend(loc="outside upper center", ncols=2)
 figure.savefig(asked.out / "classifiers.png")

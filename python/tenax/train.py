@@ -71,6 +71,7 @@ class Steps:
     """The features of a recording, a row a reading from the one on with which the windows are full, and where it slips."""
 
     session: str
+    material: str
     part: Optional[str]
     pours: bool
     rows: NDArray[np.int16]
@@ -375,6 +376,7 @@ def card(report: Dict[str, Any]) -> str:
     """A model card, Markdown. Its first line says whether the linear model is as good."""
     data, recipe, own = report["data"], report["features"], report["choice"]
     few = "" if report["has_parts"] else " (sessions left out in turn)"
+    few_false = f" with at most {100 * FALSE_MAX:.1f} % false steps" if report["has_parts"] else ""
     lines = [
         f"**{report['verdict']}**", "", "# Model card: slip from ten normal forces", "", "Written by `python -m tenax.train`.", "", "| | |", "|---|---|",
         f"| learned | `{data['file']}`, SHA-256 `{data['sha256']}`: {data['recordings']} recordings of {data['sessions']} sessions or objects, "
@@ -385,7 +387,8 @@ def card(report: Dict[str, Any]) -> str:
         f"| tables | {INPUTS}-{UNITS[0]}-{UNITS[1]}-1, 8-bit weights, 16-bit activations: the {own['name']} |",
         f"| chosen | balanced accuracy before rounding {own['unseen']:.3f} on sessions it had not seen{few} |",
         f"| calibration | log-odds = {own['calibration'][0]:.4f} logit {own['calibration'][1]:+.4f}; single threshold: {report['threshold_permille']} per mille |",
-        "", "## Sessions not seen", "", f"At the best threshold with at most {100 * FALSE_MAX:.1f} % false steps." if report["has_parts"] else "At the best threshold.", "", "| | balanced accuracy | AUC |", "|---|---|---|",
+        "", "## Sessions not seen", "", f"At the best threshold{few_false}; the five have learned at most {report['at_most']} rows.", "", "| | balanced accuracy | AUC |",
+        "|---|---|---|",
     ]
     lines += [f"| {name} | {score['balanced']:.3f} | {score['auc']:.3f} |" for name, score in report["scores"].items()]
     if report["edges"]:
@@ -411,12 +414,23 @@ def steps_of(path: Path, recipe_name: Optional[str]) -> Tuple[List[Steps], Recip
     recordings = [own for own in recordings if own["part"] != "test"]
     for own in recordings:
         rows, known = features(own["samples"], recipe)
-        all_steps.append(Steps(own["session"], own["part"], own["pours"], rows[known], own["slips"][known]))
+        all_steps.append(Steps(own["session"], own["material"], own["part"], own["pours"], rows[known], own["slips"][known]))
     if not any(len(own.rows) for own in all_steps):
         raise ValueError(f"{path}: every recording is shorter than the windows")
     # What is disturbed has more noise than its array, and no slip to be learned in it.
     noise = [own["noise"] for own in recordings if own["part"] in (None, "train") and not own["disturbs"]]
     return all_steps, recipe, (min(noise), max(noise))
+
+
+def _where(one: Choice, other: Choice, judged: Sequence[Steps]) -> str:
+    """The materials on which the first has the better balanced accuracy."""
+    better = []
+    for material in sorted({own.material for own in judged}):
+        rows, slips = rows_of([own for own in judged if own.material == material])
+        right = [balanced_accuracy_score(slips, each.network.logits(rows) > each.threshold) for each in (one, other)]
+        if right[0] > right[1]:
+            better.append(material)
+    return ", ".join(better) or "no material"
 
 
 def train(path: Path, recipe_name: Optional[str] = None, seed: int = 1, at_most: int = 20_000) -> Tuple[Dict[str, Any], Dict[str, Any]]:
@@ -434,8 +448,11 @@ def _train(path: Path, recipe_name: Optional[str], seed: int, at_most: int) -> T
     linear_model, network = choose(sequences, seed)
     as_good = linear_model.unseen > network.unseen - BETTER
     own = linear_model if as_good else network
+    first, judged = next(folds(sequences))
     told = f"balanced accuracy {linear_model.unseen:.3f} and {network.unseen:.3f} in sessions that neither has seen"
-    verdict = f"The linear model is as good as the network ({told}); it is what was written." if as_good else f"The network is better than the linear model ({told})."
+    if has_parts:
+        told += f"; it is better on {_where(linear_model, network, judged)}"
+    verdict = f"The linear model is {'as good as the network; it is what was written' if as_good else 'not as good as the network'}: {told}."
     sha256 = hashlib.sha256(path.read_bytes()).hexdigest()
     saved = {
         "sha256": sha256, "lag": recipe.lag, "window": recipe.window, "covariance_knee": recipe.covariance_knee, "spectrum_knee": recipe.spectrum_knee,
@@ -445,23 +462,24 @@ def _train(path: Path, recipe_name: Optional[str], seed: int, at_most: int) -> T
     edges = json.loads(_native.edges_of(str(path), recipe_name, json.dumps(saved)) or "null") if recipe.window == 10 else None
     if edges:
         saved.update(on_permille=edges["on_permille"], off_permille=edges["off_permille"])
-    first, judged = next(folds(sequences))
     (some, which), (unseen, truth) = rows_of(first), rows_of(judged)
     if len(some) > at_most:
         kept = np.random.default_rng(seed).choice(len(some), at_most, replace=False)
         some, which = some[kept], which[kept]
     false_max = FALSE_MAX if has_parts else 1.0
     scores = {name: score(values, truth, false_max) for name, values in classifiers(some, which, unseen, seed)}
-    for name, model in (("linear model, all rows", linear_model), ("network, all rows", network)):
-        scores[name] = score(model.network.logits(unseen), truth, false_max)
-    scores["as written"] = score(judge(saved, unseen), truth, false_max)
+    # Without parts these have learned the rows that they are scored on.
+    seen = "all rows" if has_parts else "of rows that it has learned"
+    for name, model in (("linear model", linear_model), ("network", network)):
+        scores[f"{name}, {seen}"] = score(model.network.logits(unseen), truth, false_max)
+    scores[f"as written, {seen}"] = score(judge(saved, unseen), truth, false_max)
     data = {
         "file": path.name, "sha256": sha256, "recordings": len(learned), "steps": len(slips), "slip_steps": int(np.count_nonzero(slips)),
         "sessions": len({each.session for each in learned}),
     }
     choice = {"name": own.name, "unseen": own.unseen, "threshold": own.threshold, "calibration": own.calibration}
     report = {
-        "verdict": verdict, "seed": seed, "data": data, "features": vars(recipe), "has_parts": has_parts, "choice": choice,
+        "verdict": verdict, "seed": seed, "data": data, "features": vars(recipe), "has_parts": has_parts, "at_most": at_most, "choice": choice,
         "threshold_permille": permille, "edges": edges, "scores": scores,
     }
     return saved, report
@@ -490,7 +508,7 @@ def main(arguments: Optional[Sequence[str]] = None) -> int:
         (asked.ship / "logic/src/array/network.in").write_text(tables)
     print(report["verdict"])
     for name, score in report["scores"].items():
-        print(f"{name:<26}balanced accuracy {score['balanced']:.3f}, AUC {score['auc']:.3f}")
+        print(f"{name:<42}balanced accuracy {score['balanced']:.3f}, AUC {score['auc']:.3f}")
     print(f"{asked.out}: network.in, network.json, model-card.md, report.json")
     return 0
 
