@@ -43,8 +43,6 @@ pub struct Network {
 }
 
 impl Network {
-    pub const WINDOWS: [usize; 1] = [COVARIANCE_WINDOW];
-
     pub fn shipped() -> Self {
         let ends = |end: usize| SEEN.map(|material| material.contact.noise_mv[end]);
         let samples =
@@ -68,7 +66,7 @@ impl Network {
     pub fn of(saved: &Saved) -> anyhow::Result<Self> {
         ensure!(saved.noise_samples[0] <= saved.noise_samples[1], "its noise is no range");
         ensure!(
-            Self::WINDOWS.contains(&saved.window),
+            saved.window == COVARIANCE_WINDOW,
             "it has a covariance of {} differences; {COVARIANCE_WINDOW} can be judged",
             saved.window
         );
