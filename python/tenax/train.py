@@ -419,7 +419,7 @@ def steps_of(path: Path, recipe_name: Optional[str]) -> Tuple[List[Steps], Recip
         raise ValueError(f"{path}: every recording is shorter than the windows")
     # What is disturbed has more noise than its array, and no slip to be learned in it.
     noise = [own["noise"] for own in recordings if own["part"] in (None, "train") and not own["disturbs"]]
-    return all_steps, recipe, (min(noise), max(noise))
+    return all_steps, recipe, (min(noise, default=0.0), max(noise, default=0.0))
 
 
 def _where(one: Choice, other: Choice, judged: Sequence[Steps]) -> str:
@@ -494,7 +494,11 @@ def main(arguments: Optional[Sequence[str]] = None) -> int:
     parser.add_argument("--rows", type=int, default=20_000, help="rows that the five classifiers learn from, at most")
     parser.add_argument("--ship", type=Path, metavar="CHECKOUT", help="also replace logic/src/array/network.in of this checkout")
     asked = parser.parse_args(arguments)
-    saved, report = train(asked.dataset, asked.recipe, asked.seed, asked.rows)
+    try:
+        saved, report = train(asked.dataset, asked.recipe, asked.seed, asked.rows)
+    except (OSError, ValueError) as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 2
     if asked.ship and saved["window"] != 10:
         parser.error("the firmware has another window")
     data = report["data"]
