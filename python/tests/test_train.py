@@ -1,7 +1,9 @@
 """The network's trainer: its tables are the firmware's, and what can be learned is learned."""
 
 import ast
+import contextlib
 import hashlib
+import io
 import json
 import os
 import re
@@ -106,7 +108,8 @@ class Trained(unittest.TestCase):
         out = self.data.parent / "out"
         tables = []
         for seed in ("3", "3", "4"):
-            train.main([str(self.data), "--recipe", str(self.data.with_suffix(".toml")), "--out", str(out), "--seed", seed, "--rows", "300"])
+            with contextlib.redirect_stdout(io.StringIO()):
+                train.main([str(self.data), "--recipe", str(self.data.with_suffix(".toml")), "--out", str(out), "--seed", seed, "--rows", "300"])
             tables.append((out / "network.in").read_text())
         report = json.loads((out / "report.json").read_text())
         # A window of ten remembers a slip for a while.
