@@ -31,7 +31,7 @@ pub fn noise_samples(steps: &[Step]) -> f64 {
     (squares[middle] / (8.343 / 9.0)).sqrt()
 }
 
-pub fn noise_of(recordings: &[&Recording]) -> f64 {
+fn noise_of(recordings: &[&Recording]) -> f64 {
     let mut all: Vec<f64> = recordings.iter().map(|recording| noise_samples(&recording.steps)).collect();
     all.sort_by(f64::total_cmp);
     all.get(all.len() / 4).copied().unwrap_or_default()
