@@ -98,8 +98,7 @@ fn of_recordings(bar: &Bar) -> Option<&str> {
 /// docs/results.md: the same bytes for the same commit.
 pub fn page(bars: &[Bar]) -> String {
     let mut text = String::from(
-        "# Results\n\nWritten by `cargo tenax check --write`. Each promise of the project, measured: scenes with seed 1, `learn` with seed 1 and \
-         20 fingertips, the array on a data set of seed 4, recordings with seed 1. No real board was measured.\n\n\
+        "# Results\n\nWritten by `cargo tenax check --write`: each promise, measured, with seed 1 (the array's data: 4). No real board was measured.\n\n\
          | promise | measured | limit | verdict |\n|---|---|---|---|\n",
     );
     let judged: Vec<&Bar> = bars.iter().filter(|bar| bar.verdict != Verdict::Clock).collect();

@@ -9,5 +9,4 @@ pub mod dataset;
 pub mod equations;
 pub mod evaluate;
 pub mod learn;
-pub mod train;
 pub mod vision;

@@ -1,6 +1,7 @@
-"""Recordings where they are used: Parquet files, and datasets for LeRobot (format v3.0).
+"""Recordings where they are used: Parquet files, Rerun, and datasets for LeRobot (format v3.0).
 
     python -m tenax.export OUT first.mcap second.mcap --task "hold the glass"
+    python -m tenax.export first.rrd first.mcap                # for Rerun: pip install './python[rerun]'
 
 Needs `pip install './python[export]'`. A row of a dataset is a slow frame, 80 a second. Nothing is left out of it: `observation.films` has
 the twelve films (V) of each of its 25 frames, `observation.switches` what switches A and B showed (V) in each, `observation.said` and
@@ -23,6 +24,8 @@ import polars as pl
 from numpy.typing import NDArray
 
 import tenax
+
+from .wire import FRAME_HZ
 
 FPS, FRAMES = 80, 25
 STATE = ("fn_n", "load_n", "fx_n", "fy_n", "ft_n", "ratio", "s2", "flexor_mv", "extensor_mv", "wearer_active", "force_known")
@@ -153,9 +156,46 @@ def to_lerobot(
     return rows
 
 
+def to_rerun(messages: Iterable[Any], file: Union[str, "os.PathLike[str]"], pictures: Iterable[Tuple[float, NDArray[np.uint8]]] = ()) -> None:
+    """Writes a recording for Rerun (.rrd): forces, muscles, films (V), ticks, what each detector says, believed or not, modes and events over the
+    timeline `time` (s); and a camera's pictures, each with its time (s), grey or RGB."""
+    import rerun as rr
+
+    messages = list(messages)
+    series: List[Tuple[str, List[float], List[float]]] = []
+    states, ticks = tenax.states(messages), tenax.ticks(messages)
+    for columns, folder in ((states, "senses"), (ticks, "ticks")):
+        for name in columns.keys() - {"time_s", "mode", "source", "said", "believed", "acted"}:
+            known = [n for n, value in enumerate(columns[name]) if value is not None]
+            series.append((f"{folder}/{name}", [columns["time_s"][n] for n in known], [float(columns[name][n]) for n in known]))
+    for bit, detector in enumerate(tenax.DETECTORS):
+        for word in ("said", "believed", "acted"):
+            series.append((f"detectors/{detector}/{word}", ticks["time_s"], [float(own >> bit & 1) for own in ticks[word]]))
+    raws = [message for message in messages if message.kind == "Raw"]
+    valid = [(raw.time_s - (len(raw.frames) - 1 - n) / FRAME_HZ, frame) for raw in raws for n, frame in enumerate(raw.frames) if frame.valid]
+    for film in range(12):
+        series.append((f"films/{film + 1}", [time_s for time_s, _ in valid], [frame.films[film] * tenax.MV / 1000 for _, frame in valid]))
+    words = [(message.time_s, " ".join(map(str, vars(message.kind_).values()))) for message in messages if message.kind == "Event"]
+    changes = [n for n, mode in enumerate(states["mode"]) if n == 0 or mode != states["mode"][n - 1]]
+    texts = {"events": words, "mode": [(states["time_s"][n], states["mode"][n]) for n in changes]}
+
+    stream = rr.RecordingStream("tenax")
+    stream.save(Path(file))
+    for place, times, values in series:
+        if values:
+            stream.send_columns(place, [rr.TimeColumn("time", duration=times)], rr.Scalars.columns(scalars=values))
+    for place, rows in texts.items():
+        if rows:
+            stream.send_columns(place, [rr.TimeColumn("time", duration=[own[0] for own in rows])], rr.TextLog.columns(text=[own[1] for own in rows]))
+    for time_s, picture in pictures:
+        stream.set_time("time", duration=time_s)
+        stream.log("camera", rr.Image(picture))
+    stream.disconnect()
+
+
 def main(arguments: Optional[Sequence[str]] = None) -> int:
-    parser = argparse.ArgumentParser(prog="python -m tenax.export", description="Recordings as a dataset for LeRobot.")
-    parser.add_argument("out", type=Path, help="folder, new or empty")
+    parser = argparse.ArgumentParser(prog="python -m tenax.export", description="Recordings as a dataset for LeRobot, or one for Rerun.")
+    parser.add_argument("out", type=Path, help="folder, new or empty; a file .rrd for Rerun")
     parser.add_argument("recordings", nargs="+", help="recordings (MCAP) of `tenax record`, or captured lines")
     parser.add_argument("--task", default="hold what slips")
     asked = parser.parse_args(arguments)
@@ -163,6 +203,11 @@ def main(arguments: Optional[Sequence[str]] = None) -> int:
     for path in asked.recordings:
         with tenax.open(path) as board:
             recordings.append(list(board))
+    if asked.out.suffix == ".rrd":
+        if len(recordings) > 1:
+            parser.error("one recording a file .rrd")
+        to_rerun(recordings[0], asked.out)
+        return 0
     print(f"{asked.out}: {to_lerobot(recordings, asked.out, asked.task)} rows of {FPS} a second")
     return 0
 

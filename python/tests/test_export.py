@@ -72,6 +72,33 @@ class Dataset(unittest.TestCase):
         export.to_parquet(self.messages, self.folder)
         self.assertEqual(pl.read_parquet(self.folder / "ticks.parquet").height, 25 * pl.read_parquet(self.folder / "states.parquet").height)
 
+    def test_rerun_reads_every_sample_back(self) -> None:
+        try:
+            from rerun.chunk import RrdReader
+        except ImportError as missing:
+            self.skipTest(f"Rerun is not installed: {missing}")
+        file = self.folder.with_suffix(".rrd")
+        picture = np.arange(48, dtype=np.uint8).reshape(6, 8)
+        export.to_rerun(self.messages, file, [(0.5, picture)])
+        found = {}
+        for chunk in RrdReader(file).stream().to_chunks():
+            columns = chunk.to_record_batch().to_pydict()
+            times = columns.get("time", [])
+            for name, values in columns.items():
+                if name.endswith((":scalars", ":text", ":buffer")):
+                    found.setdefault(chunk.entity_path, []).extend(zip(times, (value[0] for value in values)))
+        run, states = self.run_of, tenax.states(self.messages)
+        for place, expected in (("/senses/fn_n", states["fn_n"]), ("/ticks/drive", tenax.ticks(self.messages)["drive"])):
+            told = [value for _, value in sorted(found[place])]
+            np.testing.assert_array_equal(told, [value for value in expected if value is not None], err_msg=place)
+        believed = [value for _, value in sorted(found["/detectors/s1/believed"])]
+        np.testing.assert_array_equal(believed, run.ticks["believed"][: len(believed)] >> tenax.DETECTORS.index("s1") & 1)
+        films = np.array([[value for _, value in sorted(found[f"/films/{n}"])] for n in range(1, 13)])
+        frames = [frame.films for raw in self.messages if raw.kind == "Raw" for frame in raw.frames if frame.valid]
+        np.testing.assert_array_equal(np.round(films.T * 1000 / tenax.MV), frames)
+        self.assertEqual(bytes(found["/camera"][0][1]), picture.tobytes())
+        self.assertTrue(found["/events"] and found["/mode"])
+
     def test_nothing_is_overwritten(self) -> None:
         self.folder.mkdir()
         (self.folder / "mine").write_text("")

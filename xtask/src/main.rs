@@ -49,7 +49,7 @@ const PROGRAMS: [Program; 4] = [
             ("check", "measure every promise; writes docs/results.md"),
             ("learn", "a camera teaches the Hebbian network"),
             ("dataset", "labelled recordings of the force array"),
-            ("train", "the force array's network, or intent recognition"),
+            ("train", "intent recognition on recordings of people"),
             ("evaluate", "networks and intent recognition on recordings"),
             ("chart", "the figures of docs/"),
             ("vision", "skin and object through the camera"),

@@ -131,11 +131,11 @@ fn contracted(report: &Report, wrong_ms: f64) -> (String, bool) {
     let Some(muscle) = report.replay.as_ref().and_then(|replay| replay.muscle.as_ref()) else {
         return ("no muscle in it".to_owned(), false);
     };
-    let (Some(noticed_s), Some(delay_ms)) = (muscle.noticed_s, muscle.onset_delay_ms) else {
+    let Some(delay_ms) = muscle.onset_delay_ms else {
         return ("never noticed".to_owned(), false);
     };
     let figure = format!(
-        "noticed at {noticed_s:.4} s, {delay_ms:.1} ms after its onset; active for {:.0} %, {} reflex commands meanwhile, wrong motion {wrong_ms:.0} ms",
+        "noticed {delay_ms:.1} ms after its onset; active {:.0} %, {} reflex commands, wrong motion {wrong_ms:.0} ms",
         100.0 * muscle.active_part,
         muscle.reflex_while_active
     );

@@ -37,7 +37,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
 }
 
 /// Makes a data set, writes it and its manifest, and prints the manifest's counts. Fails if a file cannot be written.
-pub fn make(plan: Plan, file: &Path) -> anyhow::Result<()> {
+fn make(plan: Plan, file: &Path) -> anyhow::Result<()> {
     let Some(name) = file.file_name().map(|name| name.to_string_lossy().into_owned()) else {
         bail!("--out needs a file name, such as out/array_dataset.csv");
     };

@@ -19,7 +19,7 @@ Examples:
   tenax evaluate                                   the shipped network on the test split of the built-in data set
   tenax evaluate --report json                     for programs
   tenax evaluate --dataset my.csv --recipe my.toml --network out/train
-                                                   the network that `tenax train` has made of one's own
+                                                   the network that `python -m tenax.train` has made of one's own
   tenax evaluate emg --recordings FOLDER           intent recognition on EMG envelopes of people";
 
 /// Score the array's network on held-out data
@@ -34,7 +34,7 @@ pub struct Args {
     /// How its columns are read: a recipe file, or the name of one in recipes/ [default: by its name]
     #[arg(long, value_name = "FILE.toml|NAME", requires = "dataset")]
     recipe: Option<String>,
-    /// The network in this folder of `tenax train` instead of the one that ships
+    /// The network in this folder of `python -m tenax.train` instead of the one that ships
     #[arg(long, value_name = "DIR")]
     network: Option<PathBuf>,
     /// Seed of the built-in data set

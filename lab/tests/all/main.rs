@@ -6,7 +6,6 @@ mod evaluate;
 mod learn;
 mod photoelastic;
 mod table;
-mod training;
 mod vision;
 
 /// Heads or sessions of a test: `TENAX_SEEDS`, or these.

@@ -42,7 +42,7 @@ pub struct Preprocessor {
     ready: bool,
     sum: i32,
     covariance: SlidingCovariance,
-    spectrum: SlidingSpectrum<SPECTRUM_WINDOW>,
+    spectrum: SlidingSpectrum,
     structure: Structure,
     missing: usize,
     features: Features,

@@ -1,4 +1,4 @@
-//! The shipped detector, from `network.in` as `tenax train --ship` writes it.
+//! The shipped detector, from `network.in` as `python -m tenax.train --ship` writes it.
 
 use super::detector::{Judgement, Model};
 use super::network::{Layer, Mlp};

@@ -13,7 +13,7 @@ use tenax_hal_shim::wire::Forces;
 use tenax_hal_shim::words::Code;
 use tenax_logic::array::shipped::MODEL;
 use tenax_logic::array::taxels::Taxels;
-use tenax_logic::array::{FEATURES, Preprocessor, Reading, ShippedDetector};
+use tenax_logic::array::{FEATURES, Preprocessor, PreprocessorConfig, Reading, ShippedDetector};
 use tenax_logic::config::Config;
 use tenax_logic::detectors::{Detector, Said, Sensed};
 use tenax_logic::force::FrictionDetector;
@@ -117,30 +117,31 @@ impl Sensors {
     }
 }
 
-#[derive(Default)]
-struct Told {
-    time_s: Vec<f64>,
-    slip: Vec<bool>,
-    incipient: Vec<bool>,
-    value: Vec<f64>,
+/// Decisions as columns: in each frame what a detector says, and the number that it compares.
+fn table<'py>(
+    py: Python<'py>,
+    frames: impl IntoIterator<Item = usize>,
+    mut decide: impl FnMut(usize) -> (Said, f64),
+) -> Table<'py> {
+    let (mut times, mut slips, mut incipient, mut values) = (vec![], vec![], vec![], vec![]);
+    for frame in frames {
+        let (said, value) = decide(frame);
+        times.push(frame_s(frame));
+        slips.push(said.slip);
+        incipient.push(said.incipient);
+        values.push(value);
+    }
+    let table = PyDict::new(py);
+    put(&table, "time_s", times)?;
+    put(&table, "slip", slips)?;
+    put(&table, "incipient", incipient)?;
+    put(&table, "value", values)?;
+    Ok(table)
 }
 
-impl Told {
-    fn push(&mut self, time_s: f64, said: Said, value: f64) {
-        self.time_s.push(time_s);
-        self.slip.push(said.slip);
-        self.incipient.push(said.incipient);
-        self.value.push(value);
-    }
-
-    fn table(self, py: Python<'_>) -> Table<'_> {
-        let table = PyDict::new(py);
-        put(&table, "time_s", self.time_s)?;
-        put(&table, "slip", self.slip)?;
-        put(&table, "incipient", self.incipient)?;
-        put(&table, "value", self.value)?;
-        Ok(table)
-    }
+/// The last frame of each slow frame.
+fn slow_frames(count: usize) -> impl Iterator<Item = usize> {
+    (1..=count).map(|n| n * SLOTS - 1)
 }
 
 fn frame_s(frame: usize) -> f64 {
@@ -156,15 +157,14 @@ pub fn s1<'py>(
     settings: Settings,
 ) -> Table<'py> {
     let (config, films) = (config(&settings)?, columns(&volts, PVDF_COUNT, rate_hz, FRAME_HZ)?);
-    let (mut detector, mut told) = (VibrationDetector::default(), Told::default());
-    for frame in 0..films[0].len() {
+    let mut detector = VibrationDetector::default();
+    table(py, 0..films[0].len(), |frame| {
         let vibration = detector.process(&config.vibration, &samples(&films, PVDF, frame), None);
         if (frame + 1) % SLOTS == 0 {
             detector.learn_noise(&config.vibration, false);
         }
-        told.push(frame_s(frame), Said::slip(vibration.s1), f64::from(vibration.level) * MV);
-    }
-    told.table(py)
+        (Said::slip(vibration.s1), f64::from(vibration.level) * MV)
+    })
 }
 
 /// S2 (Prosthesis, section 5) of normal force and shear in newtons, 80 times a second: value is Ft/Fn.
@@ -179,17 +179,17 @@ pub fn s2<'py>(
     let config = config(&settings)?.friction;
     let normal = drawn(&normal_n.as_array().to_vec(), rate_hz, SLOW_HZ)?;
     let shear = drawn(&shear_n.as_array().to_vec(), rate_hz, SLOW_HZ)?;
-    let (mut detector, mut told) = (FrictionDetector::default(), Told::default());
-    let (sensors, mut said) = (Sensors::default(), Said::NOTHING);
-    for (n, (normal, shear)) in normal.iter().zip(&shear).enumerate() {
+    let (mut detector, mut said, sensors) = (FrictionDetector::default(), Said::NOTHING, Sensors::default());
+    let mut forces_n = normal.iter().zip(&shear);
+    table(py, slow_frames(normal.len().min(shear.len())), |frame| {
+        let (normal, shear) = forces_n.next().unwrap_or((&0.0, &0.0));
         let quadrants = fsr_quadrants_n(normal.max(0.0), *shear, 0.0);
         let forces = forces(quadrants.map(|newtons| (newtons * 1e3) as i32), config.loaded_mn);
-        let frame = (n * SLOTS) as u32;
-        said = detector.step(&config, &sensors.sensed(frame, Some(&forces), true)).unwrap_or(said);
+        let begins = (frame + 1 - SLOTS) as u32;
+        said = detector.step(&config, &sensors.sensed(begins, Some(&forces), true)).unwrap_or(said);
         let ratio = detector.ratio_permille().map_or(f64::NAN, |permille| f64::from(permille) / 1e3);
-        told.push(frame_s((n + 1) * SLOTS - 1), said, ratio);
-    }
-    told.table(py)
+        (said, ratio)
+    })
 }
 
 fn readings(taxels_v: &[Vec<f64>]) -> impl Iterator<Item = Reading> {
@@ -201,15 +201,22 @@ fn readings(taxels_v: &[Vec<f64>]) -> impl Iterator<Item = Reading> {
     })
 }
 
-/// Features of taxels' volts, as the firmware's network gets them, a row a slow frame; 0 until the windows are full.
+/// Features of taxels' volts, as the firmware's network gets them, a row a slow frame; 0 until the windows are full. `others`: a lag, and
+/// the knees of covariances, bins and structure functions, in place of the shipped network's.
 #[pyfunction]
+#[pyo3(signature = (volts, rate_hz, others=None))]
 pub fn features<'py>(
     py: Python<'py>,
     volts: PyReadonlyArray2<'py, f64>,
     rate_hz: f64,
+    others: Option<(u8, u32, u32, u32)>,
 ) -> PyResult<Bound<'py, PyArray2<i16>>> {
     let taxels_v = columns(&volts, ARRAY_COUNT, rate_hz, SLOW_HZ)?;
-    let mut preprocessor = Preprocessor::new(MODEL.preprocessor);
+    let mut config = MODEL.preprocessor;
+    if let Some((lag, covariance_knee, spectrum_knee, structure_knee)) = others {
+        config = PreprocessorConfig { lag, covariance_knee, spectrum_knee, structure_knee, ..config };
+    }
+    let mut preprocessor = Preprocessor::new(config);
     let rows: Vec<Vec<i16>> = readings(&taxels_v)
         .map(|reading| preprocessor.push(&reading).map_or(vec![0; FEATURES], |features| features.to_vec()))
         .collect();
@@ -226,31 +233,27 @@ pub fn photoelastic<'py>(
 ) -> Table<'py> {
     let config = HeadConfig { fitted: true, ..config(&settings)?.head };
     let light = [drawn(&volts.as_array().to_vec(), rate_hz, FRAME_HZ)?];
-    let (mut detector, mut told) = (PhotoelasticDetector::default(), Told::default());
-    let mut sensors = Sensors::default();
-    for frame in 0..light[0].len() {
+    let (mut detector, mut sensors) = (PhotoelasticDetector::default(), Sensors::default());
+    table(py, 0..light[0].len(), |frame| {
         let [sample] = samples(&light, HEAD, frame);
         sensors.head.process(&config, sample);
         if (frame + 1) % SLOTS == 0 {
             sensors.head.cycle(&config, Hints { unloaded: false, force_mn: None });
         }
         let said = detector.step(&config, &sensors.sensed(frame as u32, None, true));
-        told.push(frame_s(frame), said.unwrap_or_default(), f64::from(sensors.head.level()) * MV);
-    }
-    told.table(py)
+        (said.unwrap_or_default(), f64::from(sensors.head.level()) * MV)
+    })
 }
 
 /// The MLP that ships (Bamshad 2023) on taxels' volts, 80 times a second: value is its confidence, 0 to 1.
 #[pyfunction]
 pub fn mlp<'py>(py: Python<'py>, volts: PyReadonlyArray2<'py, f64>, rate_hz: f64) -> Table<'py> {
     let taxels_v = columns(&volts, ARRAY_COUNT, rate_hz, SLOW_HZ)?;
-    let (mut detector, mut told) = (ShippedDetector::default(), Told::default());
-    for (cycle, reading) in readings(&taxels_v).enumerate() {
-        let verdict = detector.push(&reading);
-        let (said, sure) = (Said::slip(verdict.slip), f64::from(verdict.confidence_permille) / 1e3);
-        told.push(frame_s((cycle + 1) * SLOTS - 1), said, sure);
-    }
-    told.table(py)
+    let (mut detector, mut readings) = (ShippedDetector::default(), readings(&taxels_v));
+    table(py, slow_frames(taxels_v[0].len()), |_| {
+        let verdict = detector.push(&readings.next().unwrap_or_default());
+        (Said::slip(verdict.slip), f64::from(verdict.confidence_permille) / 1e3)
+    })
 }
 
 /// The Hebbian network (Tada 2006) on films' and gauges' volts: value is output o1. Codes v1 and v2 of the teacher are 1, 0 or -1, a row
@@ -279,10 +282,10 @@ pub fn hebbian<'py>(
     }
     let codes = codes.as_array();
     let mut lessons = taught_s.as_array().into_iter().copied().zip(codes.rows()).peekable();
-    let (mut sensors, mut told, mut outputs) = (Sensors::default(), Told::default(), Vec::new());
-    for (frame, held) in held.into_iter().enumerate().take(films[0].len()) {
-        let (time_s, is_held) = (frame_s(frame), held >= 0.5);
-        while let Some((_, row)) = lessons.next_if(|(at_s, _)| *at_s <= time_s) {
+    let (mut sensors, mut outputs) = (Sensors::default(), Vec::new());
+    let told = table(py, 0..held.len().min(films[0].len()), |frame| {
+        let is_held = held[frame] >= 0.5;
+        while let Some((_, row)) = lessons.next_if(|(at_s, _)| *at_s <= frame_s(frame)) {
             let code = |n: usize| Code::from_sign(row.get(n).map_or(0, |code| code.signum() as i32));
             detector.teach(&config.hebbian, [code(0), code(1)], 0);
         }
@@ -294,11 +297,11 @@ pub fn hebbian<'py>(
             sensors.strain.read(gauge, read[gauge], !is_held);
         }
         let said = detector.step(&config.hebbian, &sensors.sensed(frame as u32, None, is_held));
-        told.push(time_s, said.unwrap_or_default(), f64::from(detector.outputs()[0]) / 128.0);
-        outputs.push(f64::from(detector.outputs()[1]) / 128.0);
-    }
+        let [o1, o2, ..] = detector.outputs().map(|output| f64::from(output) / 128.0);
+        outputs.push(o2);
+        (said.unwrap_or_default(), o1)
+    })?;
     let record = Record::Network(detector.learned());
-    let table = told.table(py)?;
-    table.set_item("o2", PyArray1::from_vec(py, outputs))?;
-    Ok((table, PyBytes::new(py, record.payload(&mut [0; PAYLOAD_BYTES]))))
+    told.set_item("o2", PyArray1::from_vec(py, outputs))?;
+    Ok((told, PyBytes::new(py, record.payload(&mut [0; PAYLOAD_BYTES]))))
 }

@@ -31,7 +31,7 @@ pub fn noise_samples(steps: &[Step]) -> f64 {
     (squares[middle] / (8.343 / 9.0)).sqrt()
 }
 
-pub fn noise_of(recordings: &[&Recording]) -> f64 {
+fn noise_of(recordings: &[&Recording]) -> f64 {
     let mut all: Vec<f64> = recordings.iter().map(|recording| noise_samples(&recording.steps)).collect();
     all.sort_by(f64::total_cmp);
     all.get(all.len() / 4).copied().unwrap_or_default()
@@ -48,7 +48,7 @@ pub fn accept(network: &Network, recordings: &[Recording]) -> anyhow::Result<()>
         if !(low / BEYOND..=high * BEYOND).contains(&noise) {
             bail!(
                 "{session}: a reading of this array differs from the one before by {noise:.1} samples (14 bits); the network \
-                 learned on arrays of {low:.1} to {high:.1} and would take the rest for slip or for rest; `tenax train` learns \
+                 learned on arrays of {low:.1} to {high:.1} and would take the rest for slip or for rest; `python -m tenax.train` learns \
                  from recordings of one's own (docs/array.md)"
             );
         }
@@ -85,6 +85,6 @@ mod tests {
         let network = Network::shipped();
         assert!(accept(&network, &[noisy(5.0)]).is_ok());
         let said = accept(&network, &[noisy(60.0)]).unwrap_err().to_string();
-        assert!(said.contains("tenax train") && said.contains("samples"), "{said}");
+        assert!(said.contains("tenax.train") && said.contains("samples"), "{said}");
     }
 }

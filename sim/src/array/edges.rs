@@ -8,9 +8,9 @@ use super::Verdicts;
 use super::pour::{Pour, pour};
 use crate::labelled::Recording;
 
-pub const FALSE_PER_HOUR_MAX: f64 = 60.0;
+const FALSE_PER_HOUR_MAX: f64 = 60.0;
 /// False steps in 2800: the paper's 36, less a fifth for sessions that edges are not chosen on.
-pub const FALSE_2800_MAX: f64 = 29.0;
+const FALSE_2800_MAX: f64 = 29.0;
 /// Confidences that are tried for the first edge and for the second, per mille.
 const ON: std::ops::Range<u16> = 500..1_000;
 const OFF: std::ops::Range<u16> = 50..1_000;
@@ -47,7 +47,7 @@ pub fn choose(pours: &[(&Recording, Confidences)]) -> Option<Chosen> {
     quiet.max_by(|a, b| a.pour.balanced.total_cmp(&b.pour.balanced))
 }
 
-pub fn score(pours: &[(&Recording, Confidences)], edges: Edges) -> Option<Pour> {
+fn score(pours: &[(&Recording, Confidences)], edges: Edges) -> Option<Pour> {
     let said: Vec<Verdicts> = pours.iter().map(|(_, confidences)| verdicts(confidences, edges)).collect();
     pour(&pours.iter().map(|own| own.0).zip(&said).collect::<Vec<_>>())
 }

@@ -1,4 +1,4 @@
-//! A network to be judged: the one that ships, or one that `tenax train` has written.
+//! A network to be judged: the one that ships, or one that `python -m tenax.train` has written.
 
 use std::path::Path;
 
@@ -15,9 +15,9 @@ use super::material::SEEN;
 use super::real::Logits;
 use crate::labelled::Step;
 
-pub const FILE: &str = "network.json";
+const FILE: &str = "network.json";
 
-/// A network as `tenax train` writes it: the firmware's integers, what its features are made with, and on what noise it learned.
+/// A network as `python -m tenax.train` writes it: the firmware's integers, what its features are made with, and on what noise it learned.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Saved {
     pub sha256: String,
@@ -43,8 +43,6 @@ pub struct Network {
 }
 
 impl Network {
-    pub const WINDOWS: [usize; 1] = [COVARIANCE_WINDOW];
-
     pub fn shipped() -> Self {
         let ends = |end: usize| SEEN.map(|material| material.contact.noise_mv[end]);
         let samples =
@@ -54,11 +52,12 @@ impl Network {
         Self { model: Box::new(shipped::MODEL.clone()), noise_samples: [samples(low), samples(high)] }
     }
 
-    /// One from a folder that `tenax train` has written. Fails if there is none, or it is none of the firmware's.
+    /// One from a folder that `python -m tenax.train` has written. Fails if there is none, or it is none of the firmware's.
     pub fn read(folder: &Path) -> anyhow::Result<Self> {
         let file = folder.join(FILE);
-        let text = std::fs::read_to_string(&file)
-            .with_context(|| format!("{}: no network; `tenax train --out DIR` writes one", file.display()))?;
+        let text = std::fs::read_to_string(&file).with_context(|| {
+            format!("{}: no network; `python -m tenax.train --out DIR` writes one", file.display())
+        })?;
         let saved: Saved = serde_json::from_str(&text).with_context(|| file.display().to_string())?;
         Self::of(&saved).with_context(|| file.display().to_string())
     }
@@ -67,7 +66,7 @@ impl Network {
     pub fn of(saved: &Saved) -> anyhow::Result<Self> {
         ensure!(saved.noise_samples[0] <= saved.noise_samples[1], "its noise is no range");
         ensure!(
-            Self::WINDOWS.contains(&saved.window),
+            saved.window == COVARIANCE_WINDOW,
             "it has a covariance of {} differences; {COVARIANCE_WINDOW} can be judged",
             saved.window
         );
@@ -120,12 +119,12 @@ impl Saved {
 }
 
 /// Values of a layer of this size. Fails if there are more or fewer.
-pub fn fixed<T: Clone, const N: usize>(values: &[T]) -> anyhow::Result<[T; N]> {
+fn fixed<T: Clone, const N: usize>(values: &[T]) -> anyhow::Result<[T; N]> {
     <[T; N]>::try_from(values.to_vec()).ok().context("a layer of another size")
 }
 
 /// Weights of a layer of this size. Fails if they are of another.
-pub fn square<const I: usize, const O: usize>(rows: &[Vec<i16>]) -> anyhow::Result<[[i16; I]; O]> {
+fn square<const I: usize, const O: usize>(rows: &[Vec<i16>]) -> anyhow::Result<[[i16; I]; O]> {
     let rows: Vec<[i16; I]> = rows.iter().map(|row| fixed(row)).collect::<Result<_, _>>()?;
     fixed(&rows)
 }
