@@ -157,7 +157,7 @@ fn runner() -> TestRunner {
 
 /// Reasons of which one must be reported; none where the envelope stays below this wearer's activity, or at a limit.
 fn must_be_reported(emg_active_mv: f64, fault: Fault) -> Option<&'static [Quality]> {
-    use Quality::{Creep, Flat, Hum, LeadOff, Saturated};
+    use Quality::{Creep, Endless, Flat, Hum, LeadOff, Saturated};
     match fault {
         Fault::Constant(pin) if !(98.0..=3_252.0).contains(&pin) => Some(&[LeadOff]),
         Fault::Constant(pin) if pin < 102.0 => None,
@@ -165,8 +165,8 @@ fn must_be_reported(emg_active_mv: f64, fault: Fault) -> Option<&'static [Qualit
         Fault::Constant(pin) if pin - 300.0 > 2_900.0 => Some(&[Saturated, Flat]),
         Fault::Constant(pin) if pin - 300.0 > 1.1 * emg_active_mv => Some(&[Flat, Hum, Saturated]),
         Fault::Lifted { mv, .. } if mv > 1.1 * emg_active_mv => Some(&[Flat, Hum]),
-        Fault::Creep(_) => Some(&[Creep, LeadOff, Saturated, Flat, Hum]),
-        Fault::Noisy { .. } => Some(&[LeadOff]),
+        Fault::Creep(_) => Some(&[Creep, LeadOff, Saturated, Flat, Hum, Endless]),
+        Fault::Noisy { .. } => Some(&[LeadOff, Endless]),
         _ => None,
     }
 }

@@ -219,11 +219,13 @@ impl Muscles {
     pub fn think(&mut self, journal: &mut Journal) -> bool {
         if let Some(lesson) = &mut self.lesson {
             let frame = journal.frame();
-            if lesson.calibration.is_over(frame)
-                && let Progress::Done(result) = lesson.calibration.take(frame, [None; 2])
-            {
-                self.lesson = None;
-                return self.conclude(result, journal);
+            if lesson.calibration.is_over(frame) {
+                if let Progress::Done(result) = lesson.calibration.take(frame, [None; 2]) {
+                    self.lesson = None;
+                    return self.conclude(result, journal);
+                }
+                // A step is asked for again.
+                lesson.asked = None;
             }
             return false;
         }

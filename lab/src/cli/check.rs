@@ -33,7 +33,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         Box::new(|| Ok(vec![wearer::random(&root)])),
     ];
     groups.extend(recordings::groups(&data, &board)?);
-    groups.push(Box::new(|| people::bars(&data.join("myobock"))));
+    groups.push(Box::new(|| people::bars(&data)));
     groups.push(Box::new(learn::bars));
     groups.push(Box::new(drawn::bars));
     groups.push(Box::new(array::bars));

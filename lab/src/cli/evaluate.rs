@@ -61,14 +61,17 @@ enum What {
 struct EmgArgs {
     #[command(flatten)]
     people: People,
+    /// Only these people, by number
+    #[arg(long, value_name = "P,P", value_delimiter = ',')]
+    persons: Vec<u32>,
     /// Also score this many random electrode faults over people at rest
     #[arg(long, value_name = "N", default_value_t = 0)]
     faults: u32,
 }
 
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
-    let shown = if let Some(What::Emg(EmgArgs { people, faults })) = &args.what {
-        people.report.show(&emg::evaluate(&people.recordings, *faults, people.seed)?)
+    let shown = if let Some(What::Emg(EmgArgs { people, persons, faults })) = &args.what {
+        people.report.show(&emg::evaluate(&people.recordings, persons, *faults, people.seed)?)
     } else {
         args.report.show(&network(args)?)
     };

@@ -128,9 +128,11 @@ pub fn sessions(folder: &Path) -> anyhow::Result<Vec<Session>> {
     Ok(Recordings::read(folder)?.sessions)
 }
 
-/// Scores everybody in a folder, and so many faults drawn over them. Fails if there is no recording, or one cannot be read.
-pub fn evaluate(folder: &Path, faults: u32, seed: u64) -> anyhow::Result<Report> {
-    let all = Recordings::read(folder)?;
+/// Scores these people of a folder, everybody if none is named, and so many faults drawn over them. Fails if there is no recording, or one
+/// cannot be read.
+pub fn evaluate(folder: &Path, people: &[u32], faults: u32, seed: u64) -> anyhow::Result<Report> {
+    let mut all = Recordings::read(folder)?;
+    all.people.retain(|person, _| people.is_empty() || people.contains(person));
     let trials: Vec<Trial> = all.people.values().flat_map(|days| Trials::of(days).all).collect();
     let faults =
         (faults > 0).then(|| faults::draw(&FITTED, &trials.iter().collect::<Vec<_>>(), faults, seed));

@@ -4,10 +4,11 @@ use tenax_hal_shim::channel::FRAME_HZ;
 
 pub use tenax_hal_shim::words::Prompt;
 
-use super::level::level_of;
-use super::model::{EmgModel, Point, Refusal, octaves};
+use super::level::{TOP_LEVEL, level_of};
+use super::model::{EmgModel, LEAST_SEPARATION_PERMILLE, Point, Refusal, octaves};
 use super::trust::TOP_UV;
 
+const PROMPTS: [Prompt; 3] = [Prompt::Rest, Prompt::Close, Prompt::Open];
 pub const PROMPT_FRAMES: u32 = 5 * FRAME_HZ;
 const REACTION_FRAMES: u32 = 7 * FRAME_HZ / 10;
 const MISSING_PERMILLE: u32 = 50;
@@ -16,6 +17,8 @@ const HELD_PERMILLE: u32 = 600;
 const STANDS_OUT: i32 = octaves(500);
 /// Standard deviation below which an envelope is no muscle's, 1 %.
 const STILL: i32 = octaves(15);
+/// Range of an electrode that stuck through a step: 32 %. The other contraction's electrode of recorded people has 52 % at least.
+const STUCK: i32 = octaves(400);
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Progress {
@@ -32,9 +35,24 @@ struct Phase {
     sum: Point,
     squares: [i64; 2],
     squares_of_difference: i64,
+    /// Highest level, and largest distance below the top, of the whole step.
+    high: Point,
+    depth: Point,
 }
 
 impl Phase {
+    fn range(&mut self, uv: [Option<i32>; 2]) {
+        for (n, level) in uv.into_iter().enumerate().filter_map(|(n, uv)| Some((n & 1, level_of(uv?)))) {
+            self.high[n] = self.high[n].max(level);
+            self.depth[n] = self.depth[n].max(TOP_LEVEL - level);
+        }
+    }
+
+    /// Above rest throughout, and within a narrow range.
+    fn has_stuck(&self, n: usize, rest: Point) -> bool {
+        self.mean()[n] - rest[n] >= STANDS_OUT && self.high[n] + self.depth[n] - TOP_LEVEL <= STUCK
+    }
+
     fn take(&mut self, uv: [Option<i32>; 2], stands_out: impl Fn(Point) -> bool) {
         self.readings += 1;
         let [Some(flexor), Some(extensor)] = uv else {
@@ -104,12 +122,15 @@ fn separation(distance: i32, variances: [i64; 2]) -> i32 {
 pub struct Calibration {
     began: u32,
     phases: [Phase; 3],
+    /// Steps that were asked for again, and the one of them that is under way.
+    again: [bool; 3],
+    last: usize,
     over: Option<Result<EmgModel, Refusal>>,
 }
 
 impl Calibration {
     pub fn begin(frame: u32) -> Self {
-        Self { began: frame, phases: [Phase::default(); 3], over: None }
+        Self { began: frame, phases: [Phase::default(); 3], again: [false; 3], last: 2, over: None }
     }
 
     /// Envelopes above the live zero, uV, flexor first; None: no number. Once for each pair of readings.
@@ -119,23 +140,42 @@ impl Calibration {
         }
         let since = frame.wrapping_sub(self.began);
         let (phase, within) = ((since / PROMPT_FRAMES) as usize, since % PROMPT_FRAMES);
-        let prompt = match phase {
-            0 => Prompt::Rest,
-            1 => Prompt::Close,
-            2 => Prompt::Open,
-            _ => {
-                let result = self.conclude();
-                self.over = Some(result);
-                return Progress::Done(result);
-            }
+        let phase = match phase {
+            0 | 1 => phase,
+            2 => self.last,
+            _ => return self.end(frame),
         };
+        self.phases[phase].range(uv);
         if within >= REACTION_FRAMES {
             let rest = self.phases[0].mean();
             let stands_out =
                 |point: Point| point[0] - rest[0] >= STANDS_OUT || point[1] - rest[1] >= STANDS_OUT;
             self.phases[phase].take(uv, |point| phase == 0 || stands_out(point));
         }
-        Progress::Asks(prompt, PROMPT_FRAMES - within)
+        Progress::Asks(PROMPTS[phase], PROMPT_FRAMES - within)
+    }
+
+    fn end(&mut self, frame: u32) -> Progress {
+        let result = match self.stuck() {
+            Some(step) if !self.again[step] => {
+                (self.phases[step], self.again[step], self.last) = (Phase::default(), true, step);
+                self.began = frame.wrapping_sub(2 * PROMPT_FRAMES);
+                return Progress::Asks(PROMPTS[step], PROMPT_FRAMES);
+            }
+            Some(_) => Err(Refusal::NotAMuscle),
+            None => self.conclude(),
+        };
+        self.over = Some(result);
+        Progress::Done(result)
+    }
+
+    /// The contraction during which the other contraction's electrode stuck.
+    fn stuck(&self) -> Option<usize> {
+        let [rest, close, open] = self.phases.map(|phase| phase.mean());
+        let model = EmgModel::new(rest, close, open, [0; 2], LEAST_SEPARATION_PERMILLE).ok()?;
+        let others = [(1, model.opening_site()), (2, model.closing_site())];
+        let step = others.into_iter().find(|&(step, other)| self.phases[step].has_stuck(other, rest));
+        step.map(|(step, _)| step)
     }
 
     pub const fn is_over(&self, frame: u32) -> bool {
@@ -155,8 +195,7 @@ impl Calibration {
         }
         let spread = [root(rest.variance(0)), root(rest.variance(1))];
         // First a reason for what is no model at all, then the separation.
-        let least = super::model::LEAST_SEPARATION_PERMILLE;
-        let model = EmgModel::new(rest.mean(), close.mean(), open.mean(), spread, least)?;
+        let model = EmgModel::new(rest.mean(), close.mean(), open.mean(), spread, LEAST_SEPARATION_PERMILLE)?;
         let (closes, opens) = (model.closing_site(), model.opening_site());
         if root(close.variance(closes)) < STILL || root(open.variance(opens)) < STILL {
             return Err(Refusal::NotAMuscle);
@@ -177,17 +216,27 @@ impl Calibration {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::vec;
+    use std::vec::Vec;
 
     fn run(envelopes: impl Fn(u32, u32) -> [f64; 2]) -> Result<EmgModel, Refusal> {
+        asked(envelopes).1
+    }
+
+    fn asked(envelopes: impl Fn(u32, u32) -> [f64; 2]) -> (Vec<Prompt>, Result<EmgModel, Refusal>) {
         let mut calibration = Calibration::begin(u32::MAX - 100);
+        let mut prompts = vec![];
         for n in 0.. {
             let frame = (u32::MAX - 100).wrapping_add(n * 25 / 3);
-            let phase = (n * 25 / 3 / PROMPT_FRAMES).min(2);
+            let step = n * 25 / 3 / PROMPT_FRAMES;
+            let phase = if step < 3 { step } else { prompts.last().map_or(0, |&prompt| prompt as u32) };
             let uv = envelopes(phase, n).map(|mv| (mv >= 0.0).then_some((mv * 1e3) as i32));
             match calibration.take(frame, uv) {
-                Progress::Done(result) => return result,
+                Progress::Done(result) => return (prompts, result),
                 Progress::Asks(prompt, left) => {
-                    assert_eq!(prompt as u32, n * 25 / 3 / PROMPT_FRAMES);
+                    if step >= prompts.len() as u32 {
+                        prompts.push(prompt);
+                    }
                     assert!((1..=PROMPT_FRAMES).contains(&left));
                 }
             }
@@ -232,6 +281,36 @@ mod tests {
         let over = Progress::Done(Err(Refusal::SensorLost));
         assert_eq!(calibration.take(3 * PROMPT_FRAMES, [Some(60_000); 2]), over);
         assert_eq!(calibration.take(PROMPT_FRAMES - 1, [Some(60_000); 2]), over, "whatever comes later");
+    }
+
+    // Shows W7.
+    #[test]
+    fn a_step_in_which_the_other_electrode_stuck_is_asked_for_again_and_refused_then() {
+        use Prompt::{Close, Open, Rest};
+        let sticks = |until: u32, step: u32, other: usize, share: f64| {
+            move |phase: u32, n: u32| {
+                let mut mv = states(phase, n, GOOD);
+                let own = GOOD[3 - step as usize][other];
+                if phase == step && n * 25 / 3 < until * PROMPT_FRAMES {
+                    mv[other] = share * own * (1.0 + 0.1 * (f64::from(n) * 0.02).sin());
+                }
+                mv
+            }
+        };
+        for share in [0.3, 0.6, 1.0] {
+            let (prompts, result) = asked(sticks(3, 2, 0, share));
+            assert_eq!((prompts, result.is_ok()), (vec![Rest, Close, Open, Open], true), "{share}");
+            let (prompts, result) = asked(sticks(9, 2, 0, share));
+            assert_eq!(
+                (prompts, result),
+                (vec![Rest, Close, Open, Open], Err(Refusal::NotAMuscle)),
+                "{share}"
+            );
+        }
+        let (prompts, result) = asked(sticks(2, 1, 1, 0.3));
+        assert_eq!((prompts, result.is_ok()), (vec![Rest, Close, Open, Close], true));
+        let (prompts, result) = asked(|phase, n| states(phase, n, GOOD));
+        assert_eq!((prompts, result.is_ok()), (vec![Rest, Close, Open], true));
     }
 
     #[test]

@@ -11,6 +11,13 @@ use super::trust::HUM_PART;
 pub const OVER_UV: i32 = 2_950_000;
 /// Share of opening that opens even if a sensor is doubted, per mille.
 const STRONG: i32 = 1_000;
+/// Share of opening above the calibrated one of closing, from which an opening begins beside a doubted closing electrode.
+const BESIDE: i32 = 100;
+/// Share from which an electrode does not rest, and sixteenths of the calibrated rise of the other electrode
+/// below which that takes no part in a closing or an opening, and from which it does.
+const WORKS: i32 = 240;
+const UNHEARD: [i32; 2] = [4, 2];
+const HEARD: i32 = 8;
 /// Share of closing that closes even without a reading of the opening site, per mille.
 const ALONE: i32 = 900;
 const CALM_FRAMES: u16 = 40;
@@ -26,7 +33,7 @@ const HEARS_SPREADS: i32 = 1;
 const DEFAULT_BEGINS_UV: [i32; 2] = [600_000, 1_500_000];
 const DEFAULT_OVER: [i32; 2] = [1_322, 2_900];
 const DEFAULT_FRAMES: i32 = 24;
-const DEFAULT_HEARS: i32 = 256;
+const DEFAULT_HEARS: [i32; 2] = [512, 256];
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Wish {
@@ -45,6 +52,17 @@ pub struct Electrode {
     pub doubted: bool,
     pub still: bool,
     pub hums: bool,
+    /// Active without the other electrode: hides no opening.
+    pub lone: bool,
+}
+
+/// Activity of an electrode, and the other one's part in it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    Rest,
+    Unheard,
+    Unknown,
+    Heard,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -59,6 +77,11 @@ struct Sites {
     both: [i32; 2],
     /// Least rise of the other electrode with each wish; None if its signal is too small.
     hears: [Option<i32>; 2],
+    /// Calibrated rise of the other electrode with each wish, Q10 octaves.
+    other: [i32; 2],
+    works_uv: [i32; 2],
+    /// Share from which an opening begins beside a doubted closing electrode.
+    beside: i32,
     close_ratio: i32,
     turn: i32,
     active_uv: [[i32; 2]; 2],
@@ -78,8 +101,7 @@ impl Sites {
         let ends = [0, 1].map(|n| f.ends[n].min(begins[n] - f.hysteresis * 1_000 / span[n]).max(f.least_end));
         let fall = [0, 1].map(|n| f.fall.max(f.least_fall * 1_000 / span[n]));
         let hears = [close[1] - rest[1], open[0] - rest[0]];
-        let both =
-            [hears[0] * 1_000 / span[1], hears[1] * 1_000 / span[0]].map(|share| share.max(0) + f.both);
+        let both = [0, 1].map(|n| (hears[n] * 1_000 / span[1 - n]).max(0));
         let active = [0, 1].map(|k: usize| {
             [0, 1].map(|n: usize| (rest[n] + span[n] * ACTIVE[k] / 1_000).min(level_of(ACTIVE_UV[k])))
         });
@@ -91,11 +113,14 @@ impl Sites {
             begins,
             ends,
             fall,
-            both,
+            beside: (both[0] + BESIDE).min(STRONG),
+            both: both.map(|share| share + f.both),
             hears: [0, 1].map(|n: usize| {
                 let least = (HEARS_SPREADS * spread[1 - n]).min(hears[n] / 2).max(hears[n] / 4);
                 (hears[n] >= HEARS_AT_ALL).then_some(least)
             }),
+            other: hears,
+            works_uv: [0, 1].map(|n: usize| uv_of(rest[n] + span[n] * WORKS / 1_000)),
             close_ratio: close[1] - close[0],
             turn: ((open[1] - open[0]) - (close[1] - close[0])).max(256),
             active_uv: [0, 1].map(|n: usize| {
@@ -122,6 +147,7 @@ struct Machine {
     calm: u16,
     /// Shares of both sites and the place, Q4.
     mean: [i32; 3],
+    was_lone: bool,
     crest: i32,
     trough: [i32; 2],
     /// Offset of rest, uV, Q8.
@@ -158,7 +184,36 @@ impl Decide {
         let site = self.machine.site();
         match &self.sites {
             Some(sites) => Some([sites.rest[1 - site], sites.hears[site]?]),
-            None => Some([FLOOR_LEVEL, DEFAULT_HEARS]),
+            None => Some([FLOOR_LEVEL, DEFAULT_HEARS[site]]),
+        }
+    }
+
+    /// Electrode 0 (flexor) or 1 (extensor) is the closing one.
+    pub fn closes(&self, electrode: usize) -> bool {
+        self.sites.as_ref().map_or(0, |sites| sites.electrode[0]) == electrode
+    }
+
+    pub fn part(&self, electrode: usize, electrodes: &[Electrode; 2]) -> Part {
+        let Some(own) = electrodes[electrode & 1].uv else { return Part::Rest };
+        let Some(sites) = &self.sites else {
+            return if own < ACTIVE_UV[0] { Part::Rest } else { Part::Unknown };
+        };
+        let n = usize::from(sites.electrode[1] == electrode);
+        if own < sites.works_uv[n] {
+            return Part::Rest;
+        }
+        match electrodes[(1 - electrode) & 1].uv {
+            Some(other) if sites.other[n] >= HEARS_AT_ALL => {
+                let share = (level_of(own) - sites.rest[n]).min(sites.span[n]);
+                let expected = share * sites.other[n] / sites.span[n].max(1);
+                let rise = level_of(other - (self.machine.drift[1 - n] >> 8)) - sites.rest[1 - n];
+                match 16 * rise {
+                    rise if rise < UNHEARD[n] * expected => Part::Unheard,
+                    rise if rise >= HEARD * expected => Part::Heard,
+                    _ => Part::Unknown,
+                }
+            }
+            _ => Part::Unknown,
         }
     }
 
@@ -185,6 +240,7 @@ impl Machine {
             since: [i32::MAX; 2],
             calm: 0,
             mean: [0; 3],
+            was_lone: false,
             crest: 0,
             trough: [0; 2],
             drift: [0; 2],
@@ -209,9 +265,11 @@ impl Machine {
         let f = self.fitted;
         let over = electrodes[1].over;
         // `max(1)`, far below any span or turn, rules a division by zero out.
+        let mut blind = electrodes.map(|electrode| electrode.uv.is_none() || electrode.doubted);
+        blind[0] |= electrodes[0].lone;
         let level = [0, 1].map(|n: usize| {
-            let subtracted = electrodes[n].uv.map(|uv| uv - (self.drift[n] >> 8));
-            subtracted.map_or(sites.rest[n], level_of)
+            let known = electrodes[n].uv.filter(|_| n == 1 || !blind[0]);
+            known.map_or(sites.rest[n], |uv| level_of(uv - (self.drift[n] >> 8)))
         });
         let share = [0, 1].map(|n: usize| (level[n] - sites.rest[n]) * 1_000 / sites.span[n].max(1));
         let place = (level[1] - level[0] - sites.close_ratio) * 1_000 / sites.turn.max(1);
@@ -219,13 +277,21 @@ impl Machine {
         for (mean, now) in self.mean.iter_mut().zip(now) {
             *mean += (now * 16 - *mean) / f.mean_frames.max(1);
         }
-        let blind = electrodes.map(|electrode| electrode.uv.is_none() || electrode.doubted);
+        if blind[0] {
+            (self.mean[0], self.mean[2]) = (0, 16 * now[2]);
+        }
+        if electrodes[0].lone && !self.was_lone {
+            // A co-contraction whose closing electrode is doubted is no opening that begins.
+            self.trough[1] = self.mean[1] / 16;
+        }
+        self.was_lone = electrodes[0].lone;
         let wish = self.wanted(sites, blind, over);
         // A doubted closing electrode says nothing about the ratio.
         let lately = !blind[0] && self.since[0] < f.after_frames[0];
         let strong = level[1] - sites.rest[1] - sites.span[1] >= if lately { f.firmer } else { 0 };
         let alone = share[0] < sites.both[1] + f.both || electrodes[0].still;
-        let apart = (place >= f.place_begins && alone) || blind[0];
+        let rises = !electrodes[0].lone || share[1] >= self.trough[1] + f.rise;
+        let apart = (place >= f.place_begins && alone || blind[0]) && rises;
         self.settle(wish);
         if apart && strong && !over && self.wish != Wish::Open {
             (self.wish, self.next, self.stands) = (Wish::Open, Wish::Open, 0);
@@ -254,13 +320,14 @@ impl Machine {
             self.crest = 0;
         }
         let ends = |n: usize| sites.ends[n].max(self.crest / 256 - sites.fall[n]);
-        let begins = |n: usize| sites.begins[n].max(self.trough[n] + f.rise);
+        let beside = [0, if blind[0] { sites.beside } else { 0 }];
+        let begins = |n: usize| sites.begins[n].max(self.trough[n] + f.rise).max(beside[n]);
         let busy = !blind[0] && place < f.place_begins && (closes >= f.busy || opens >= f.busy);
         self.since[0] = if busy { 0 } else { self.since[0].saturating_add(1) };
         self.since[1] = if self.wish == Wish::Open { 0 } else { self.since[1].saturating_add(1) };
         let calm =
             self.since[0] >= f.after_frames[1] || (self.since[0] >= f.after_frames[0] && opens >= STRONG);
-        let may_open = calm && !blind[0] && !blind[1] && closes < sites.both[1];
+        let may_open = calm && !blind[1] && closes < sites.both[1];
         let may_close = !over && !blind[0] && (!blind[1] || closes >= ALONE);
         match self.wish {
             Wish::Open if over => Wish::Open,
@@ -327,7 +394,8 @@ impl Machine {
     }
 
     fn uncalibrated(&mut self, electrodes: &[Electrode; 2]) {
-        let level = electrodes.map(|electrode| electrode.uv.map(level_of));
+        let mut level = electrodes.map(|electrode| electrode.uv.map(level_of));
+        level[0] = level[0].filter(|_| !electrodes[0].lone);
         let is_over = electrodes[1].over;
         let wants = |n: usize, wish: Wish| {
             let slack = if self.wish == wish { 512 } else { 0 };

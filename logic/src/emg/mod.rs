@@ -72,7 +72,14 @@ impl Channel {
             self.trust.judge(self.active_uv[0], uv);
         }
         let trust = &self.trust;
-        Electrode { uv, over, doubted: !trust.is_good(), still: trust.is_still(), hums: trust.hums() }
+        Electrode {
+            uv,
+            over,
+            doubted: !trust.is_good(),
+            still: trust.is_still(),
+            hums: trust.hums(),
+            lone: trust.is_lone(),
+        }
     }
 
     fn is_known(&self) -> bool {
@@ -108,6 +115,8 @@ pub struct Emg {
     pairs: u8,
     lone: [bool; 2],
     electrodes: [Electrode; 2],
+    /// The other electrode was doubted as active alone when the wish began.
+    beside_lone: bool,
     verdict: Verdict,
 }
 
@@ -130,6 +139,7 @@ impl Emg {
             pairs: 0,
             lone: [false; 2],
             electrodes: Default::default(),
+            beside_lone: false,
             verdict: Verdict::default(),
         }
     }
@@ -180,9 +190,18 @@ impl Emg {
         let mover = self.decide.mover();
         let raised = self.channels.each_ref().map(|channel| channel.raised);
         self.lone = self.proof.lone(levels, raised);
+        for (n, channel) in self.channels.iter_mut().enumerate() {
+            let part = self.decide.part(n, &self.electrodes);
+            channel.trust.weigh(part, self.decide.closes(n), wish == Wish::Rest || mover == n);
+        }
         let other = &self.electrodes[1 - mover];
+        if wish != self.verdict.wish {
+            let [own, other] = [mover, 1 - mover].map(|n| &self.channels[n].trust);
+            self.beside_lone = other.quality() == Quality::Endless && own.is_fresh();
+        }
         // A deaf electrode can prove nothing, and disprove nothing.
-        let hears = self.decide.hears().filter(|_| other.uv.is_some() && !other.hums);
+        let deaf = other.uv.is_none() || other.hums || self.beside_lone && other.lone;
+        let hears = self.decide.hears().filter(|_| !deaf);
         let trust = &self.channels[mover].trust;
         let proven = self.proof.take(levels, wish, mover, trust, hears, raised[mover]) && !self.lone[mover];
         let [flexor, extensor] = &self.channels;

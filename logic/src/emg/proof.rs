@@ -16,8 +16,8 @@ const LEAST_HEARD: i32 = 123;
 const HEARD_FRAMES: u16 = 120;
 /// Slow frames from the begin of a wish in which the other electrode rises at once: 38 ms.
 const AT_ONCE_FRAMES: u16 = 3;
-/// Slow frames in a row that make a rise: one is a glitch.
-const HEARD_FOR: u8 = 2;
+/// Slow frames in a row that make a rise, closing and opening: one is a glitch.
+const HEARD_FOR: [u8; 2] = [5, 2];
 /// Gradual rise: at most [`MOST_IN_BLOCK`] of it in a block, per mille, and at least [`PART_OF_BLOCK`] in [`BLOCKS_OF_RISE`] blocks.
 const MOST_IN_BLOCK: i32 = 650;
 const PART_OF_BLOCK: i32 = 100;
@@ -141,7 +141,7 @@ impl Proof {
             rise >= least * (1 + i32::from(self.wary))
         });
         self.hears = if heard == Some(true) { self.hears.saturating_add(1) } else { 0 };
-        self.heard |= self.age <= HEARD_FRAMES && self.hears >= HEARD_FOR;
+        self.heard |= self.age <= HEARD_FRAMES && self.hears >= HEARD_FOR[usize::from(wish == Wish::Open)];
         if !self.proven {
             self.proven = match (heard, wish) {
                 (Some(_), Wish::Open) => {
@@ -149,7 +149,8 @@ impl Proof {
                     self.apart = self.apart || returned || self.rise_apart();
                     self.heard && self.apart && (trust.has_turned() || self.is_gradual(mover))
                 }
-                _ => self.heard || trust.has_turned_twice(),
+                (Some(_), _) => self.heard || trust.is_joined(),
+                (None, _) => self.heard || trust.has_turned_twice(),
             };
         }
         if self.over > OVER_FRAMES || !(over || trust.is_sound() && raised) {
@@ -160,7 +161,7 @@ impl Proof {
                 self.age = if raised && trust.is_constant() { 0 } else { HEARD_FRAMES };
             }
         }
-        self.proven &= !trust.is_straight();
+        self.proven &= !trust.is_straight() && (wish == Wish::Open || !trust.is_deaf());
         if self.proven {
             self.wary = 0;
         }

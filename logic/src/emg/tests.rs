@@ -204,6 +204,68 @@ fn an_electrode_that_swings_and_is_not_heard_is_doubted() {
     }
 }
 
+// Shows W5.
+#[test]
+fn a_restless_flexor_is_told_within_5_s_is_never_proven_and_hides_no_opening() {
+    let levels =
+        [0.3, 0.6, 1.0].into_iter().flat_map(|share| [0.0, 0.02, 0.05, 0.1].map(|ripple| (share, ripple)));
+    for (share, ripple, hz) in
+        levels.flat_map(|(share, ripple)| [0.05, 0.7, 5.0].map(|hz| (share, ripple, hz)))
+    {
+        let mv = 90.0 * (480.0f64 / 90.0).powf(share) - 30.0;
+        let stuck = |t: f64| mv * (1.0 + ripple * (TAU * hz * t).sin());
+        let mut emg = wearer();
+        run(&mut emg, 2.0, rest);
+        let alone = run(&mut emg, 5.0, |t| [stuck(t), rest(t)[1]]);
+        assert!(alone.iter().all(|v| !v.proven && v.wish != Wish::Open), "{share} {ripple} {hz}");
+        assert_ne!(emg.quality(0), Quality::Good, "{share} {ripple} {hz}");
+        let after = run(&mut emg, 1.0, |t| [stuck(t), rest(t)[1]]);
+        assert!(after.iter().all(|v| v.wish == Wish::Rest), "{share} {ripple} {hz}");
+        let opening = run(&mut emg, 2.0, |t| [stuck(t), alive(2_000.0, t)]);
+        let begun = opening.iter().position(|v| v.wish == Wish::Open).unwrap();
+        assert!(begun as f64 / HZ < 0.06 && part(&opening, Wish::Open) > 0.9, "{share} {ripple} {hz}");
+        assert!(opening.iter().any(|v| v.proven), "{share} {ripple} {hz}");
+        run(&mut emg, 2.0, rest);
+        assert_eq!(emg.quality(0), Quality::Good);
+    }
+}
+
+// Shows W5.
+#[test]
+fn a_flexor_that_sticks_as_a_closing_ends_closes_no_longer() {
+    let mut emg = wearer();
+    run(&mut emg, 2.0, rest);
+    let closing = run(&mut emg, 2.0, |t| [alive(450.0, t), alive(160.0, t + 0.1)]);
+    assert!(closing.last().unwrap().proven);
+    let sticks = run(&mut emg, 3.0, |t| [450.0 * (1.0 + 0.04 * (TAU * t).sin()), rest(t)[1]]);
+    let proven = sticks.iter().filter(|v| v.proven && v.wish == Wish::Close).count();
+    assert!(proven as f64 / HZ < 1.2, "{proven}");
+    assert_eq!(emg.quality(0), Quality::Endless);
+}
+
+// Shows W5.
+#[test]
+fn a_flexor_that_never_rests_is_told_without_calibration_too() {
+    let mut emg = Emg::default();
+    run(&mut emg, 1.0, rest);
+    let stuck = run(&mut emg, 6.0, |t| [1_850.0 * (1.0 + 0.03 * (TAU * 4.0 * t).sin()), rest(t)[1]]);
+    assert!(stuck.iter().any(|v| v.wish == Wish::Close), "or it shows nothing");
+    assert!(stuck.iter().all(|v| !v.proven) && stuck.iter().skip(1_200).all(|v| v.wish == Wish::Rest));
+    assert_eq!([emg.quality(0), emg.quality(1)], [Quality::Endless, Quality::Good]);
+    run(&mut emg, 2.0, rest);
+    assert_eq!(emg.quality(0), Quality::Good);
+}
+
+#[test]
+fn a_closing_whose_other_electrode_stays_at_rest_is_proven_by_its_wide_band() {
+    let mut emg = wearer();
+    run(&mut emg, 2.0, rest);
+    let wide = |t: f64| 450.0 * (1.0 + 0.35 * (TAU * 1.5 * t).sin());
+    let closing = run(&mut emg, 10.0, |t| [wide(t), rest(t)[1]]);
+    assert!(closing.iter().skip(480).all(|v| v.wish == Wish::Close && v.proven));
+    assert_eq!(emg.quality(0), Quality::Good);
+}
+
 #[test]
 fn what_an_electrode_that_swings_alone_wishes_is_not_proven_though_it_is_heard_then() {
     let swing = |t: f64| 0.5 - 0.5 * (TAU * 1.3 * t).cos();

@@ -3,6 +3,7 @@
 
 use heapless::Vec;
 
+use super::decide::Part;
 use super::mains::{Mains, UNIT_UV, WINDOW};
 
 /// Top of an envelope's range, uV above the live zero: 3.15 V at the pin.
@@ -21,6 +22,19 @@ const CREEP_FRAMES: u16 = 200;
 const TOP_FRAMES: u16 = 120;
 /// Slow frames of activity without a pause: 60 s. One person has tone for more than 30 s.
 const ENDLESS_FRAMES: u16 = 4_800;
+/// Slow frames in which the other electrode takes no part, 2.4 s; of activity within a narrow band, 4.5 s, or 6.7 s
+/// if the other electrode takes part. Twice as many on the opening electrode, which opens by little without a proof.
+const UNHEARD_FRAMES: u16 = 190;
+const NARROW_THIRDS: u16 = 1_080;
+const FRESH_THIRDS: u16 = 3 * 80;
+/// Slow frames without the other electrode's part in all after which this one hides no opening: 0.75 s.
+const LONE_FRAMES: u16 = 60;
+/// Slow frames in a row without and with its part that end and make the proof of a closing: 0.2 s, 0.38 s.
+const DEAF_FRAMES: i8 = -16;
+const JOINED_FRAMES: i8 = 30;
+/// Fall from a crest and rise from the trough after it that leave a narrow band, thirty-seconds: 22 and 28 %.
+const FALLS: i32 = 7;
+const RISES: i32 = 9;
 /// Good slow frames after which an electrode is believed again: 1 s.
 const BACK_FRAMES: u16 = 80;
 /// Slow frames between the points of a curve, 50 ms, and before its first one counts.
@@ -43,6 +57,7 @@ pub enum Quality {
     Creep,
     /// Constant within 1 %.
     Flat,
+    /// Active without the other electrode's part, within a narrow band, or for 60 s.
     Endless,
     Saturated,
 }
@@ -84,6 +99,14 @@ pub struct Trust {
     crest_uv: i32,
     climbing: u16,
     at_top: u16,
+    unheard: u16,
+    /// Thirds of slow frames, and a crest, or the trough after it, uV.
+    narrow: u16,
+    band_uv: [i32; 2],
+    /// The band was wide within the last second.
+    lively: bool,
+    /// Slow frames in a row with the other electrode's part, or negative, without it.
+    run: i8,
     /// Proofs of this contraction, two at most, and slow frames since the last.
     proofs: u8,
     since_proof: u16,
@@ -155,6 +178,64 @@ impl Trust {
         if self.good >= BACK_FRAMES && (!is_active || self.has_turned_twice()) {
             self.quality = Quality::Good;
         }
+    }
+
+    /// The other electrode's part, once a slow frame. `counts`: it is not moving the hand itself.
+    pub fn weigh(&mut self, part: Part, closes: bool, counts: bool) {
+        self.run = match part {
+            Part::Heard => self.run.max(0).saturating_add(1),
+            Part::Unheard => self.run.min(0).saturating_sub(1),
+            _ => 0,
+        };
+        if part == Part::Rest {
+            self.unheard = self.unheard.saturating_sub(10);
+            self.narrow = self.narrow.saturating_sub(30);
+            (self.band_uv, self.lively) = ([0, i32::MAX], false);
+            return;
+        }
+        let longer = if closes { 1 } else { 2 };
+        if self.unheard >= longer * UNHEARD_FRAMES || self.narrow >= longer * NARROW_THIRDS {
+            self.lose(Quality::Endless);
+            return;
+        }
+        match part {
+            Part::Unheard => self.unheard += 1,
+            Part::Heard if counts => self.unheard = self.unheard.saturating_sub(2),
+            _ => {}
+        }
+        self.narrow += if part == Part::Heard { 2 } else { 3 };
+        self.lively &= self.is_fresh();
+        self.wander(self.last_uv);
+    }
+
+    fn wander(&mut self, uv: i32) {
+        let [crest, trough] = &mut self.band_uv;
+        *trough = (*trough).min(uv);
+        if *trough >= *crest - *crest / 32 * FALLS {
+            (*crest, *trough) = ((*crest).max(uv), i32::MAX);
+        } else if uv > *trough + *trough / 32 * RISES {
+            (self.unheard, self.narrow, self.lively) = (0, 0, true);
+            self.band_uv = [uv, i32::MAX];
+        }
+    }
+
+    /// Active without the other electrode.
+    pub const fn is_lone(&self) -> bool {
+        self.unheard >= LONE_FRAMES || matches!(self.quality, Quality::Endless)
+    }
+
+    /// At rest, or out of a narrow band, within the last second.
+    pub const fn is_fresh(&self) -> bool {
+        self.narrow < FRESH_THIRDS
+    }
+
+    /// The other electrode has taken its part for long enough to prove a closing.
+    pub const fn is_joined(&self) -> bool {
+        self.run >= JOINED_FRAMES || self.lively
+    }
+
+    pub const fn is_deaf(&self) -> bool {
+        self.run < DEAF_FRAMES && !self.lively
     }
 
     fn lose(&mut self, quality: Quality) {

@@ -55,16 +55,17 @@ impl Muscles {
 /// The guided calibration: each prompt, rest, close and open, is answered with the first 5 s of a recording.
 pub fn calibrate(phases: [&Muscles; 3]) -> Result<EmgModel, Refusal> {
     let mut calibration = Calibration::begin(0);
-    for (phase, muscles) in (0..).zip(phases) {
-        for (t_s, pair) in muscles.within() {
+    for begin in (0..).step_by(PROMPT_FRAMES as usize) {
+        let prompt = match calibration.take(begin, [None; 2]) {
+            Progress::Done(result) => return result,
+            Progress::Asks(prompt, _) => prompt,
+        };
+        for (t_s, pair) in phases[prompt as usize].within() {
             let frame = (t_s * f64::from(FRAME_HZ)) as u32;
             if frame < PROMPT_FRAMES {
-                calibration.take(phase * PROMPT_FRAMES + frame, pair);
+                calibration.take(begin + frame, pair);
             }
         }
     }
-    match calibration.take(3 * PROMPT_FRAMES, [None; 2]) {
-        Progress::Done(result) => result,
-        Progress::Asks(..) => unreachable!("three prompts are over"),
-    }
+    unreachable!("it ends by itself")
 }

@@ -1,5 +1,6 @@
-//! Faults of the electrodes drawn over recorded people who hold something and rest: by how much each opens the hand, and whether it is
-//! reported. A rest that moves the hand by itself is drawn again: that is a false motion, which is counted elsewhere.
+//! Faults of the electrodes drawn over recorded people who hold something, rest, and at the end open the hand: by how much each fault opens
+//! and closes it, whether it is reported, and whether it hinders the opening. A rest that moves the hand by itself is drawn again: that is a
+//! false motion, which is counted elsewhere.
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -15,13 +16,14 @@ use tenax_logic::account::Account;
 use tenax_logic::config::Config;
 use tenax_logic::emg::Emg;
 use tenax_logic::emg::constants::Fitted;
-use tenax_logic::emg::decide::Decide;
+use tenax_logic::emg::decide::{Decide, Wish};
+use tenax_logic::emg::level::uv_of;
 use tenax_logic::emg::model::EmgModel;
 use tenax_logic::emg::settings::GateConfig;
 use tenax_logic::emg::trust::Quality;
 use tenax_logic::gate::Gate;
 
-use super::recordings::{HZ, PAIRS_HZ};
+use super::recordings::{HZ, OPEN, PAIRS_HZ};
 use super::trial::{Kind, Trial};
 
 /// Safe opening by a fault while something is held, mm of the scenes' hand, 120 mm/s at full duty (docs/emg.md).
@@ -32,6 +34,19 @@ const LASTS_S: [f64; 2] = [0.1, 30.0];
 const AFTER_S: f64 = 1.0;
 /// Within which a fault is reported that lasts as long and is activity, s.
 const REPORTED_S: f64 = 3.0;
+/// Longest closing in all by a restless electrode, and time within which it is reported whatever its level, s.
+const SAFE_CLOSED_S: f64 = 0.3;
+const TOLD_S: f64 = 5.0;
+/// Delay of an opening beside a fault, s, and the part of its duration that it keeps.
+const LATE_S: f64 = 0.06;
+const KEPT_PART: f64 = 0.8;
+/// A restless electrode: share of its calibrated contraction, ripple, its frequency, Hz, and duration, s; one in 64 lasts up to an hour.
+const RESTLESS_SHARE: Range<f64> = 0.3..1.0;
+const RESTLESS_RIPPLE: Range<f64> = 0.0..0.1;
+const RESTLESS_HZ: [f64; 2] = [0.05, 5.0];
+const RESTLESS_S: [f64; 3] = [1.0, 60.0, 3_600.0];
+/// Time in which it reaches its level, s; shorter ones are a jump.
+const RESTLESS_RISE_S: [f64; 2] = [0.03, 3.0];
 /// Time constant of a front end, s.
 const FRONT_END_S: f64 = 0.027;
 /// Pins that give a number, mV above the live zero.
@@ -53,6 +68,8 @@ pub enum Fault {
     Saturated,
     /// A voltage, at once.
     Broken,
+    /// At a part of its contraction, wandering about it, and never at rest.
+    Restless,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -64,6 +81,8 @@ struct Drawn {
     mv: [f64; 2],
     ripple: f64,
     hz: f64,
+    rise_s: f64,
+    noise: f64,
     lasts_s: f64,
     /// mV that a loose contact gives now, and until when, s.
     loose: ([f64; 2], f64),
@@ -71,7 +90,8 @@ struct Drawn {
 }
 
 impl Drawn {
-    fn of(rng: &mut ChaCha8Rng) -> Self {
+    /// `calibrated`: levels of rest and of the own contraction, by site.
+    fn of(rng: &mut ChaCha8Rng, calibrated: [[i32; 2]; 2]) -> Self {
         let fault = Fault::value_variants()[rng.random_range(0..Fault::value_variants().len())];
         let has = [[true, false], [false, true], [false, true], [true; 2]][rng.random_range(0..4)];
         let level =
@@ -83,19 +103,44 @@ impl Drawn {
             Fault::Humming => level(rng, 50.0, 1_500.0),
             Fault::Saturated => level(rng, 2_850.0, 3_000.0),
             Fault::Broken => level(rng, 1.0, 3_301.0) - 301.0,
+            Fault::Restless => 0.0,
         };
-        let lasts_s = level(rng, LASTS_S[0], LASTS_S[1]);
+        let lasts_s = match fault {
+            Fault::Restless => {
+                let longest_s = RESTLESS_S[1 + usize::from(rng.random_ratio(1, 64))];
+                level(rng, RESTLESS_S[0], longest_s)
+            }
+            _ => level(rng, LASTS_S[0], LASTS_S[1]),
+        };
         let other = if has == [true; 2] { rng.random_range(0.05..1.0) } else { 1.0 };
         let mv = if rng.random_bool(0.5) { [mv, mv * other] } else { [mv * other, mv] };
-        Self {
+        let own = Self {
             fault,
             has,
             mv,
             ripple: rng.random_range(0.0..0.3),
             hz: rng.random_range(0.8..2.2),
+            rise_s: 0.0,
+            noise: 0.0,
             lasts_s,
             loose: ([0.0; 2], 0.0),
             state: [f64::NAN; 2],
+        };
+        if fault != Fault::Restless {
+            return own;
+        }
+        let stands = |[rest, contracts]: [i32; 2], share: f64| {
+            f64::from(uv_of(rest + (f64::from(contracts - rest) * share) as i32)) / 1e3
+        };
+        let ripple = rng.random_range(RESTLESS_RIPPLE);
+        let part = rng.random_range(0.0..1.0);
+        Self {
+            mv: calibrated.map(|levels| stands(levels, rng.random_range(RESTLESS_SHARE))),
+            ripple: ripple * part,
+            noise: ripple * (1.0 - part),
+            hz: level(rng, RESTLESS_HZ[0], RESTLESS_HZ[1]),
+            rise_s: level(rng, RESTLESS_RISE_S[0], RESTLESS_RISE_S[1]),
+            ..own
         }
     }
 
@@ -119,11 +164,21 @@ impl Drawn {
             Fault::Swinging => muscle_mv + mv * swing,
             Fault::Creeping => return (muscle_mv + mv * t_s).min(3_000.0),
             Fault::Saturated | Fault::Broken => return mv,
+            Fault::Restless => {
+                let wave = self.ripple * (TAU * self.hz * t_s + site as f64).sin();
+                // Anew as often as a loose contact.
+                let noise = self.noise * (2.0 * self.loose.0[site] / mv - 1.0);
+                let risen = (t_s / self.rise_s).min(1.0);
+                muscle_mv.min(mv) * (1.0 - risen) + mv * (risen + wave + noise)
+            }
         };
         if self.state[site].is_nan() {
             self.state[site] = muscle_mv;
         }
         self.state[site] += (1.0 - (-1.0 / PAIRS_HZ / FRONT_END_S).exp()) * (target - self.state[site]);
+        if self.fault == Fault::Restless {
+            return self.state[site];
+        }
         // What the low-pass leaves of twice the mains.
         let ripple = mv * self.ripple / (TAU * 100.0 * FRONT_END_S).hypot(1.0);
         self.state[site] + ripple * (TAU * 100.0 * t_s).sin()
@@ -136,9 +191,21 @@ struct Outcome {
     both: bool,
     wearer: usize,
     opened_mm: f64,
+    closed_s: f64,
     /// Whether it lasts and is activity, and whether it was reported in time.
     lasting: bool,
     reported: bool,
+    /// A restless electrode that is not reported within [`TOLD_S`].
+    untold: bool,
+    beside: Option<Beside>,
+}
+
+/// An opening with a fault of the closing electrode alone: whether it began late, ended early, and stayed slow.
+#[derive(Clone, Copy, Debug)]
+struct Beside {
+    late: bool,
+    ended: bool,
+    slow: bool,
 }
 
 #[derive(Clone)]
@@ -149,6 +216,7 @@ struct Hand {
     config: GateConfig,
     pairs: u32,
     opened_mm: f64,
+    closed_s: f64,
 }
 
 impl Hand {
@@ -160,6 +228,7 @@ impl Hand {
             config: Config::default().gate,
             pairs: 0,
             opened_mm: 0.0,
+            closed_s: 0.0,
         }
     }
 
@@ -171,10 +240,27 @@ impl Hand {
             self.gate.tick(&self.config, false);
             let wish = self.gate.wish(&self.config, &self.account);
             self.account.step(&self.gate, wish, true);
-            if let MotorDrive::Open(duty) = wish {
-                self.opened_mm += f64::from(duty.as_per_mille()) / 1_000.0 * 120.0 / 2_000.0;
+            match wish {
+                MotorDrive::Open(duty) => {
+                    self.opened_mm += f64::from(duty.as_per_mille()) / 1_000.0 * 120.0 / 2_000.0;
+                }
+                MotorDrive::Close(_) => self.closed_s += 1.0 / 2_000.0,
+                MotorDrive::Coast => {}
             }
         }
+    }
+
+    /// Pairs until the first with a wish to open, the number of such pairs, and the opening, mm.
+    fn opens(mut self, pairs: impl Iterator<Item = [Option<i32>; 2]>) -> Option<(usize, usize, f64)> {
+        let (before_mm, mut first, mut count) = (self.opened_mm, None, 0);
+        for (n, uv) in pairs.enumerate() {
+            self.take(uv);
+            if self.gate.verdict().wish == Wish::Open {
+                first = first.or(Some(n));
+                count += 1;
+            }
+        }
+        first.map(|first| (first, count, self.opened_mm - before_mm))
     }
 }
 
@@ -185,11 +271,15 @@ const WEARERS: [&str; 4] = ["same session", "other posture", "first day kept", "
 fn case(fitted: &'static Fitted, trial: &Trial, wearer: usize, rng: &mut ChaCha8Rng) -> Option<Outcome> {
     let rests: Vec<_> = trial.recording.rests().into_iter().filter(|rows| rows.len() > 100).collect();
     let rest = rests.get(rng.random_range(0..rests.len().max(1)))?.clone();
-    let mut drawn = Drawn::of(rng);
     let model = (wearer + 1 < WEARERS.len()).then_some(&trial.model);
     // Without a calibration the extensor's opens.
     let opens = model.map_or(1, EmgModel::opening_site);
     let electrodes = [1 - opens, opens];
+    let calibrated = electrodes.map(|n| {
+        let own = if n == trial.model.opening_site() { trial.model.open() } else { trial.model.close() };
+        [trial.model.rest()[n], own[n]]
+    });
+    let mut drawn = Drawn::of(rng, calibrated);
     let mut hand = Hand::new(Emg::of(Decide::with(fitted, model)));
     let begin = rest.start.saturating_sub((BEFORE_S * HZ) as usize);
     let pairs = |rows: Range<usize>| trial.recording.pairs(rows, trial.sites).into_iter().map(|(_, uv)| uv);
@@ -199,36 +289,73 @@ fn case(fitted: &'static Fitted, trial: &Trial, wearer: usize, rng: &mut ChaCha8
     let resting: Vec<[i32; 2]> = pairs(rest).collect();
     // There and back: no jump where it begins again.
     let resting = resting.iter().chain(resting.iter().rev()).cycle();
-    hand.opened_mm = 0.0;
+    (hand.opened_mm, hand.closed_s) = (0.0, 0.0);
     let mut alone = hand.clone();
     let mut active = [0; 2];
     let [mut lasting, mut reported] = [false; 2];
+    let mut told_s = f64::INFINITY;
+    let mut beside = None;
     let reported_within = (REPORTED_S * PAIRS_HZ) as u32;
-    for (n, uv) in (0..((drawn.lasts_s + AFTER_S) * PAIRS_HZ) as u32).zip(resting) {
-        alone.take(uv.map(Some));
-        let t_s = f64::from(n) / PAIRS_HZ;
-        let is_on = t_s < drawn.lasts_s;
+    let (fault, has, lasts_s) = (drawn.fault, drawn.has, drawn.lasts_s);
+    let lasts = (lasts_s * PAIRS_HZ) as u32;
+    let read = |drawn: &mut Drawn, uv: [i32; 2], t_s: f64, rng: &mut ChaCha8Rng| {
         let mut pair = uv.map(Some);
-        for (site, electrode) in electrodes.into_iter().enumerate().filter(|_| is_on) {
+        for (site, electrode) in electrodes.into_iter().enumerate() {
             let mv = drawn.read(site, f64::from(uv[electrode]) / 1e3, t_s, rng);
             pair[electrode] = (RANGE_MV[0]..RANGE_MV[1]).contains(&mv).then_some((mv * 1e3) as i32);
         }
+        pair
+    };
+    for (n, uv) in (0..lasts + (AFTER_S * PAIRS_HZ) as u32).zip(resting) {
+        let t_s = f64::from(n) / PAIRS_HZ;
+        if n == lasts && has == [true, false] {
+            let opening = trial.recording.contractions(OPEN);
+            let opening = opening.get(rng.random_range(0..opening.len().max(1)))?.clone();
+            let opening: Vec<[i32; 2]> = pairs(opening.start.saturating_sub(20)..opening.end).collect();
+            let faulty: Vec<_> = (n..)
+                .zip(&opening)
+                .map(|(n, uv)| read(&mut drawn, *uv, f64::from(n) / PAIRS_HZ, rng))
+                .collect();
+            beside = alone.clone().opens(opening.iter().map(|uv| uv.map(Some))).map(|(first, count, mm)| {
+                let (begun, kept, moved) =
+                    hand.clone().opens(faulty.into_iter()).unwrap_or((usize::MAX, 0, 0.0));
+                Beside {
+                    late: begun as f64 > first as f64 + LATE_S * PAIRS_HZ,
+                    ended: (kept as f64) < KEPT_PART * count as f64,
+                    slow: moved < 0.5 * mm,
+                }
+            });
+        }
+        alone.take(uv.map(Some));
+        if n >= lasts {
+            hand.take(uv.map(Some));
+            continue;
+        }
+        let pair = read(&mut drawn, *uv, t_s, rng);
         hand.take(pair);
-        for (site, electrode) in electrodes.into_iter().enumerate().filter(|_| is_on) {
-            if drawn.has[site] && (pair[electrode].is_none() || hand.emg.is_raised(electrode)) {
-                active[site] += 1;
-                lasting |= active[site] >= reported_within;
-                reported |= active[site] <= reported_within && hand.emg.quality(electrode) != Quality::Good;
+        for (_, electrode) in electrodes.into_iter().enumerate().filter(|&(site, _)| has[site]) {
+            let is_told = hand.emg.quality(electrode) != Quality::Good;
+            if is_told {
+                told_s = told_s.min(t_s);
+            }
+            if pair[electrode].is_none() || hand.emg.is_raised(electrode) {
+                active[electrode] += 1;
+                lasting |= active[electrode] >= reported_within;
+                reported |= active[electrode] <= reported_within && is_told;
             }
         }
     }
-    (alone.opened_mm == 0.0).then_some(Outcome {
-        fault: drawn.fault,
-        both: drawn.has == [true; 2],
+    let active_s = f64::from(active[0].max(active[1])) / PAIRS_HZ;
+    (alone.opened_mm == 0.0 && alone.closed_s == 0.0).then_some(Outcome {
+        fault,
+        both: has == [true; 2],
         wearer,
         opened_mm: hand.opened_mm,
+        closed_s: hand.closed_s,
         lasting,
         reported,
+        untold: fault == Fault::Restless && active_s > TOLD_S && told_s > TOLD_S,
+        beside,
     })
 }
 
@@ -238,8 +365,18 @@ pub struct Row {
     /// Those that opened by more than is safe, and the most that one did, mm.
     pub dropped: usize,
     pub most_mm: f64,
+    /// Those that closed for longer than is safe in all, and the longest, s.
+    pub closed: usize,
+    pub most_closed_s: f64,
     pub lasting: usize,
     pub reported: usize,
+    /// Restless electrodes that were not reported in time.
+    pub untold: usize,
+    /// Openings beside a fault of the closing electrode; of them late, ended early, and slow.
+    pub openings: usize,
+    pub late: usize,
+    pub ended: usize,
+    pub slow: usize,
 }
 
 impl Row {
@@ -249,8 +386,17 @@ impl Row {
             row.cases += 1;
             row.dropped += usize::from(own.opened_mm > SAFE_MM);
             row.most_mm = row.most_mm.max(own.opened_mm);
+            row.closed += usize::from(own.closed_s > SAFE_CLOSED_S);
+            row.most_closed_s = row.most_closed_s.max(own.closed_s);
             row.lasting += usize::from(own.lasting);
             row.reported += usize::from(own.lasting && own.reported);
+            row.untold += usize::from(own.untold);
+            if let Some(Beside { late, ended, slow }) = own.beside {
+                row.openings += 1;
+                row.late += usize::from(late);
+                row.ended += usize::from(ended);
+                row.slow += usize::from(slow);
+            }
         }
         row
     }

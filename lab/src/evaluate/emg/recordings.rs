@@ -163,18 +163,21 @@ impl Recording {
         let rests = rests.iter().filter(|rows| rows.len() >= 50).take(4);
         let quietest = rests.min_by(|a, b| unrest(a).total_cmp(&unrest(b))).cloned();
         let held = |label: u8| -> Vec<Range<usize>> { self.shown(label).collect() };
+        let phases = [quietest.into_iter().collect(), held(CLOSE), held(OPEN)];
+        let phases =
+            phases.map(|rows| rows.into_iter().flat_map(|rows| self.pairs(rows, sites)).collect::<Vec<_>>());
         let mut calibration = Calibration::begin(0);
-        for (phase, rows) in (0..).zip([quietest.into_iter().collect(), held(CLOSE), held(OPEN)]) {
-            let shown: Vec<_> = rows.into_iter().flat_map(|rows| self.pairs(rows, sites)).collect();
+        for begin in (0..).step_by(PROMPT_FRAMES as usize) {
+            let prompt = match calibration.take(begin, [None; 2]) {
+                Progress::Done(result) => return result,
+                Progress::Asks(prompt, _) => prompt,
+            };
             let readings = (f64::from(PROMPT_FRAMES) / 2_000.0 * PAIRS_HZ) as u32;
-            for (n, (_, uv)) in (0..readings).zip(shown.iter().cycle()) {
-                calibration.take(phase * PROMPT_FRAMES + n * 25 / 3, uv.map(Some));
+            for (n, (_, uv)) in (0..readings).zip(phases[prompt as usize].iter().cycle()) {
+                calibration.take(begin + n * 25 / 3, uv.map(Some));
             }
         }
-        match calibration.take(3 * PROMPT_FRAMES, [None; 2]) {
-            Progress::Done(result) => result,
-            Progress::Asks(..) => unreachable!("three prompts are over"),
-        }
+        unreachable!("it ends by itself")
     }
 
     /// The middles of a label's first two contractions, which a calibration sees.

@@ -1,10 +1,16 @@
 //! Scores of a recording, counted as in `baseline.py` of that data set, so that figures compare.
 
+use std::ops::Range;
+
 use serde::Serialize;
 use tenax_frames::quantile::between_ranks;
 use tenax_logic::emg::decide::Wish;
 
 use super::recordings::{CLOSE, HZ, OPEN, Recording};
+
+/// Rows within which a repetition begins and ends, 0.5 s.
+const BEGUN_ROWS: usize = 50;
+const ENDED_ROWS: usize = 50;
 
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::evaluate) struct Said {
@@ -20,6 +26,7 @@ pub(in crate::evaluate) struct Count {
     false_motions: u32,
     windows: [[u32; 3]; 2],
     repetitions: u32,
+    right: u32,
     missed: u32,
     latencies_s: Vec<f64>,
     full_s: Vec<f64>,
@@ -53,6 +60,7 @@ impl Count {
                     from += 25;
                 }
                 self.repetitions += 1;
+                self.right += u32::from(is_right(&rows, said, right));
                 let begun = rows.start.saturating_sub(20);
                 let since = |n: usize| n as f64 / HZ - 0.2;
                 let said = &said[begun..rows.end];
@@ -76,6 +84,7 @@ impl Count {
                 *windows += own;
             }
             sum.repetitions += own.repetitions;
+            sum.right += own.right;
             sum.missed += own.missed;
             sum.latencies_s.extend(&own.latencies_s);
             sum.full_s.extend(&own.full_s);
@@ -93,6 +102,7 @@ impl Count {
             close_wrong_way: part(close[2], close[0]),
             open_right: part(open[1], open[0]),
             open_wrong_way: part(open[2], open[0]),
+            repetitions_right: part(self.right, self.repetitions),
             missed: part(self.missed, self.repetitions),
             false_per_hour: f64::from(self.false_motions) / self.rest_h.max(1e-9),
             latency_s_p50: quantile(&self.latencies_s, 0.5),
@@ -104,6 +114,22 @@ impl Count {
     }
 }
 
+/// Whether a repetition was begun, held, and ended as asked.
+fn is_right(rows: &Range<usize>, said: &[Said], asked: Wish) -> bool {
+    let within = |rows: Range<usize>| {
+        said.get(rows.start.min(said.len())..rows.end.min(said.len())).unwrap_or_default()
+    };
+    let counts = |said: &[Said], wish: Wish| said.iter().filter(|own| own.wish == wish).count();
+    let begins = within(rows.start.saturating_sub(20)..rows.start + BEGUN_ROWS);
+    let held = within(rows.start + BEGUN_ROWS..rows.end.saturating_sub(10));
+    let ends = within(rows.end..rows.end + ENDED_ROWS);
+    let other = if asked == Wish::Close { Wish::Open } else { Wish::Close };
+    counts(begins, asked) > 0
+        && 10 * counts(held, asked) >= 9 * held.len()
+        && counts(held, other) == 0
+        && (ends.is_empty() || ends.iter().any(|own| own.wish != asked))
+}
+
 /// Rates and latencies of intent recognition.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct Score {
@@ -113,6 +139,8 @@ pub struct Score {
     /// Windows of held opening that open.
     pub open_right: f64,
     pub open_wrong_way: f64,
+    /// Repetitions that were answered within 0.5 s of the label's start, were held without a motion the other way, and ended within 0.5 s.
+    pub repetitions_right: f64,
     /// Repetitions that were never answered.
     pub missed: f64,
     /// Motions that began in an hour of rest.
@@ -138,6 +166,7 @@ impl Score {
             close_wrong_way: of(|score| score.close_wrong_way),
             open_right: of(|score| score.open_right),
             open_wrong_way: of(|score| score.open_wrong_way),
+            repetitions_right: of(|score| score.repetitions_right),
             missed: of(|score| score.missed),
             false_per_hour: of(|score| score.false_per_hour),
             latency_s_p50: of(|score| score.latency_s_p50),

@@ -43,7 +43,8 @@ fn a_wearers_levels_are_those_of_the_calibration() {
     assert_eq!(weak.rest_uv.map(level_of), weak.rest);
     assert_eq!((weak.begins, weak.ends, weak.fall), ([480, 690], [280, 489], [960, 967]));
     assert_eq!((weak.both, weak.hears), ([622, 420], [Some(150), None]));
-    assert_eq!((weak.close_ratio, weak.turn), (-750, 1_940));
+    assert_eq!((weak.close_ratio, weak.turn, weak.beside), (-750, 1_940, 422));
+    assert_eq!((weak.other, weak.works_uv.map(level_of)), ([400, 150], [15_900, 15_997]));
     assert_eq!(weak.active_uv.map(|own| own.map(level_of)), [[16_037, 15_912], [16_134, 16_010]]);
     let noisy = Sites::of(&F, &model([[15_600, 15_700], [17_600, 16_200], [15_900, 17_800], [450, 510]]));
     assert_eq!((noisy.begins, noisy.ends, noisy.fall), ([675, 728], [450, 500], [600, 571]));
@@ -54,7 +55,9 @@ fn a_wearers_levels_are_those_of_the_calibration() {
         [[18_100, 18_000], [15_700 + 4_100 * 350 / 1_000, 15_700 + 4_100 / 4]]
     );
     assert_eq!((loud.both, loud.hears), ([787, 300], [Some(500), None]));
-    assert_eq!(loud.fall, [545, 300]);
+    assert_eq!((loud.fall, loud.beside), ([545, 300], 587));
+    let alike = Sites::of(&F, &model([[15_600; 2], [18_600, 16_800], [15_800, 16_900], [100; 2]]));
+    assert_eq!(alike.beside, STRONG);
 }
 
 #[test]
@@ -73,7 +76,7 @@ fn electrodes_that_are_swapped_are_the_same_wearer() {
     for (wish, mover, strength) in [(Wish::Rest, 1, 0), (Wish::Close, 0, 545), (Wish::Open, 1, 500)] {
         nobody.take(&[Electrode::default(); 2]);
         nobody.machine.wish = wish;
-        assert_eq!((nobody.mover(), nobody.hears()), (mover, Some([FLOOR_LEVEL, DEFAULT_HEARS])));
+        assert_eq!((nobody.mover(), nobody.hears()), (mover, Some([FLOOR_LEVEL, DEFAULT_HEARS[mover]])));
         assert_eq!(nobody.strength_permille(), strength);
         assert_eq!(nobody.active_uv(0), ACTIVE_UV);
     }
@@ -87,6 +90,7 @@ struct State {
     trough: [i32; 2],
     crest: i32,
     blind: [bool; 2],
+    beside: i32,
     over: bool,
 }
 
@@ -97,12 +101,13 @@ const CALM: State = State {
     trough: [0; 2],
     crest: 0,
     blind: [false; 2],
+    beside: 422,
     over: false,
 };
 
 fn asked(state: State) -> (Wish, Machine) {
-    let State { wish, mean, since, trough, crest, blind, over } = state;
-    let sites = Sites { fall: [300; 2], ..sites() };
+    let State { wish, mean, since, trough, crest, blind, beside, over } = state;
+    let sites = Sites { fall: [300; 2], beside, ..sites() };
     let mut machine =
         Machine { wish, mean: mean.map(|mean| mean * 16), since, trough, crest, ..Machine::new(&F) };
     (machine.wanted(&sites, blind, over), machine)
@@ -121,8 +126,11 @@ fn opening_begins_from_its_share_and_place_while_the_other_site_is_calm() {
         (State { mean: [0, 690, 479], ..opens }, false),
         (State { mean: [419, 690, 480], ..opens }, true),
         (State { mean: [420, 690, 480], ..opens }, false),
-        (State { blind: [true, false], ..opens }, false),
         (State { blind: [false, true], ..opens }, false),
+        // Beside a doubted closing electrode: from its share, or above what a closing drives this electrode to.
+        (State { blind: [true, false], ..opens }, true),
+        (State { blind: [true, false], beside: 700, ..opens }, false),
+        (State { blind: [true, false], beside: 700, mean: [0, 700, 480], ..opens }, true),
         // Soon after other activity: not yet, only strongly, like any other. This frame counts.
         (State { since: [78, 1_000], ..opens }, false),
         (State { since: [79, 1_000], ..opens }, true),
@@ -356,4 +364,43 @@ fn without_calibration_a_wish_stands_out_by_what_is_set_and_for_so_long() {
     let stands = (1..200).find(|_| decide.take(&closes) == Wish::Close);
     assert_eq!(stands, Some(DEFAULT_FRAMES));
     assert_eq!(decide.take(&[Electrode { uv: Some(0), ..Electrode::default() }; 2]), Wish::Rest);
+}
+
+#[test]
+fn the_other_electrode_takes_part_as_calibrated_or_not() {
+    // Levels of rest, closing and opening: the extensor rises by 2000 with the flexor's 3000, the flexor by 1000 with the extensor's 4000.
+    let levels = [[15_600, 15_700], [18_600, 17_700], [16_600, 19_700], [100, 150]];
+    let of = |decide: &Decide, electrode: usize, levels: [Option<i32>; 2]| {
+        let uv = levels.map(|level| level.map(uv_of));
+        decide.part(electrode, &uv.map(|uv| Electrode { uv, ..Electrode::default() }))
+    };
+    let calibrated = Decide::with(&F, Some(&model(levels)));
+    let far = |level: i32| Some(15_700 + level);
+    for (flexor, extensor, part) in [
+        (Some(15_600 + 719), far(0), Part::Rest),
+        (Some(15_600 + 721), far(0), Part::Unheard),
+        (Some(18_600), far(498), Part::Unheard),
+        (Some(18_600), far(502), Part::Unknown),
+        (Some(18_600), far(998), Part::Unknown),
+        (Some(18_600), far(1_002), Part::Heard),
+        // Above its calibrated level an electrode expects no more.
+        (Some(19_600), far(1_002), Part::Heard),
+        (Some(18_600), None, Part::Unknown),
+        (None, far(1_002), Part::Rest),
+    ] {
+        assert_eq!(of(&calibrated, 0, [flexor, extensor]), part, "{flexor:?} {extensor:?}");
+    }
+    for (flexor, part) in [(15_723, Part::Unheard), (15_727, Part::Unknown), (16_102, Part::Heard)] {
+        assert_eq!(of(&calibrated, 1, [Some(flexor), Some(19_700)]), part, "{flexor}");
+    }
+    let weak = Decide::with(&F, Some(&model(WEAK)));
+    assert_eq!(
+        of(&weak, 1, [Some(15_600), Some(16_940)]),
+        Part::Unknown,
+        "it is hardly driven by an opening"
+    );
+    let nobody = Decide::with(&F, None);
+    for (mv, part) in [(158, Part::Rest), (160, Part::Unknown)] {
+        assert_eq!(of(&nobody, 0, [Some(level_of(mv * 1_000)), Some(15_700)]), part);
+    }
 }
