@@ -40,7 +40,7 @@ pub use self::tick::TickRecord;
 pub use self::up::{Counters, Event, EventKind, Up};
 
 /// The version of every message below. A receiver refuses frames of another.
-pub const VERSION: u8 = 8;
+pub const VERSION: u8 = 9;
 /// Hash of the names, order and types of all messages. A board and a tool of one version whose
 /// hashes differ were built from different sources.
 pub const SCHEMA: u64 = u64::from_le_bytes(Key::for_path::<(Up, Down)>("tenax").to_bytes());

@@ -1,8 +1,9 @@
 //! A hand that does not trust its line: without consent of the wearer, the line may only read.
 
+use proptest::prelude::*;
 use tenax_hal_shim::behaviour::Behaviour;
 use tenax_hal_shim::motor::{Duty, MotorDrive};
-use tenax_hal_shim::wire::{Down, EventKind, Refusal};
+use tenax_hal_shim::wire::{Down, EventKind, Refusal, Setting};
 use tenax_hal_shim::words::{Code, Consent, GripMode, Line};
 use tenax_host_tests::{Bench, closes, opens, rests, set};
 use tenax_logic::config::Config;
@@ -42,6 +43,7 @@ fn a_stranger_reads_and_changes_nothing() {
         Down::Teach { codes: [Code::Minus, Code::Plus], age_ms: 40 },
         Down::Forget,
         Down::Save,
+        Down::SetOf { of: 1, n: 0, count: 1, setting: Setting { id: SettingId::S1.number(), value: 120 } },
     ];
     for command in changes.into_iter().chain(SettingId::ALL.map(|id| set(id, id.row().max))) {
         refuses(&mut bench, command);
@@ -151,5 +153,28 @@ fn a_line_that_coasts_or_closes_slowly_silences_no_reflex() {
     }
     for (permille, muscle_mv) in [(0, 40.0), (loud, 40.0), (1_000, 40.0), (1, 400.0)] {
         assert_eq!(by_reflex(close(permille), muscle_mv), 0, "{permille} per mille, {muscle_mv} mV");
+    }
+}
+
+const IDS: [SettingId; 3] = [SettingId::S1, SettingId::S2, SettingId::Loaded];
+
+proptest! {
+    /// Two clients' frames, mixed, lost and repeated. A value out of range is in the second one's.
+    #[test]
+    fn a_transaction_sets_all_or_nothing(frames in prop::collection::vec((0..2_u16, 0..3_u8), 0..60), bad in 0..4_u8) {
+        let mut fingertip = Fingertip::trusting();
+        let value = |of: u16, n: u8| if (of, n) == (1, bad) { -1 } else { 400 + 100 * i32::from(of) };
+        let now = |fingertip: &Fingertip| IDS.map(|id| fingertip.config().get(id));
+        let before = now(&fingertip);
+        // In order at the end, so that each is taken if it can be.
+        for (of, n) in frames.into_iter().chain([(1, 0), (1, 1), (1, 2), (0, 0), (0, 1), (0, 2)]) {
+            let setting = Setting { id: IDS[usize::from(n)].number(), value: value(of, n) };
+            let done = fingertip.command(&Down::SetOf { of, n, count: 3, setting });
+            let is_set = now(&fingertip) == [0, 1, 2].map(|n| value(of, n));
+            let is_whole = is_set || [before, [400; 3], [500; 3]].contains(&now(&fingertip));
+            prop_assert!(is_whole && (is_set || n < 2 || done.is_err()), "{:?}", done);
+            prop_assert!((of, n) != (1, bad) || done.is_err());
+        }
+        prop_assert_eq!(now(&fingertip), [400; 3]);
     }
 }

@@ -60,7 +60,7 @@ pub fn relay(place: &str, mut pass: impl FnMut(TcpStream, TcpStream) + Send + 's
 
 /// The rig's scene on a board that trusts its line, so that nobody at the hand has to consent.
 pub fn trusting() -> Serving {
-    let rig = include_str!("../../scenes/rig.toml");
+    let rig = include_str!("../../scenes/rig.toml").replace("duration_s = 5.5", "duration_s = 60");
     Serving::start(&rig.replacen("\n[contact]", "\nline_trusted = true\n\n[contact]", 1))
 }
 

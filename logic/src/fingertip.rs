@@ -17,6 +17,7 @@ use tenax_hal_shim::wire::{EventKind, Forces, Slow, TickRecord};
 use tenax_hal_shim::words::{CalibrationRefusal, Cause, DriveSource, Fault, GripMode, Kept, Line};
 
 use self::behave::Eye;
+use self::commands::Staged;
 use self::link::Link;
 use self::verdicts::Verdicts;
 use crate::arbiter::{Wishes, arbitrate};
@@ -52,6 +53,7 @@ const _: () =
 pub struct Fingertip {
     config: Config,
     settings_changed: u32,
+    staged: Option<Staged>,
     calibrated: u32,
     senses: Senses,
     detectors: Detectors,

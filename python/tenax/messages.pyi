@@ -160,7 +160,15 @@ class Down_Last:
     sequence: int
     value: int
 
-Down = Union[Down_Ping, Down_Drive, Down_Set, Down_Begin, Down_Zero, Down_Samples, Down_Teach, Down_Network, Down_Forget, Down_Save, Down_Get, Down_Settings, Down_Hello, Down_Open, Down_CalibrateEmg, Down_About, Down_Stream, Down_End, Down_View, Down_Last]
+class Down_SetOf:
+    kind: Literal['SetOf']
+    sequence: int
+    of: int
+    n: int
+    count: int
+    setting: Setting
+
+Down = Union[Down_Ping, Down_Drive, Down_Set, Down_Begin, Down_Zero, Down_Samples, Down_Teach, Down_Network, Down_Forget, Down_Save, Down_Get, Down_Settings, Down_Hello, Down_Open, Down_CalibrateEmg, Down_About, Down_Stream, Down_End, Down_View, Down_Last, Down_SetOf]
 
 Reason = Literal['Dead', 'Saturated', 'Stuck', 'Noisy', 'NoContact', 'Hum', 'Creep', 'Flat', 'Endless']
 
@@ -439,7 +447,10 @@ class Refusal_Replayed:
 class Refusal_HeldTooLong:
     kind: Literal['HeldTooLong']
 
-Refusal = Union[Refusal_OutOfRange, Refusal_Loaded, Refusal_SensorLost, Refusal_WearerActive, Refusal_UnknownSetting, Refusal_NotArmed, Refusal_NoSession, Refusal_Replayed, Refusal_HeldTooLong]
+class Refusal_Incomplete:
+    kind: Literal['Incomplete']
+
+Refusal = Union[Refusal_OutOfRange, Refusal_Loaded, Refusal_SensorLost, Refusal_WearerActive, Refusal_UnknownSetting, Refusal_NotArmed, Refusal_NoSession, Refusal_Replayed, Refusal_HeldTooLong, Refusal_Incomplete]
 
 NoLesson = Literal['Absent', 'Late', 'Contradicting', 'NothingMoves', 'NoGrasp', 'Disturbed']
 

@@ -8,9 +8,9 @@ use sha2::{Digest, Sha256};
 
 /// A type whose .msg text is known: `sensor_msgs/msg/JointState`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Definition {
-    pub name: &'static str,
-    pub text: &'static str,
+pub struct Definition<'a> {
+    pub name: &'a str,
+    pub text: &'a str,
 }
 
 /// The hash of a type, given it and all that it is made of. None where a type is missing or a line is no field.
@@ -33,14 +33,17 @@ fn describe(name: &str, known: &[Definition], described: &mut BTreeMap<String, S
     if described.contains_key(name) {
         return Some(());
     }
-    let text = known.iter().find(|definition| definition.name == name)?.text;
+    let text = match known.iter().find(|definition| definition.name == name) {
+        Some(definition) => definition.text.to_owned(),
+        None => derived(name)?,
+    };
     // Its place, for a type that would hold itself.
     described.insert(name.to_owned(), String::new());
     let mut fields = Vec::new();
     for line in text.lines() {
         let line = line.split('#').next().unwrap_or("").trim();
-        // A constant is no field.
-        if line.is_empty() || line.contains('=') {
+        // A constant is no field; `<=` is a bound.
+        if line.is_empty() || line.replace("<=", "").contains('=') {
             continue;
         }
         let (kind, field) = line.split_once(char::is_whitespace)?;
@@ -77,6 +80,30 @@ fn describe(name: &str, known: &[Definition], described: &mut BTreeMap<String, S
     let described_as = format!("{{\"type_name\": \"{name}\", \"fields\": [{}]}}", fields.join(", "));
     described.insert(name.to_owned(), described_as);
     Some(())
+}
+
+/// The text of a type that rosidl derives from a service or an action.
+fn derived(name: &str) -> Option<String> {
+    let own = name.rsplit_once('/')?.1;
+    let id = "unique_identifier_msgs/UUID goal_id";
+    Some(if let Some(action) = own.strip_suffix("_SendGoal_Request") {
+        format!("{id}\n{action}_Goal goal")
+    } else if own.ends_with("_SendGoal_Response") {
+        "bool accepted\nbuiltin_interfaces/Time stamp".to_owned()
+    } else if own.ends_with("_GetResult_Request") {
+        id.to_owned()
+    } else if let Some(action) = own.strip_suffix("_GetResult_Response") {
+        format!("int8 status\n{action}_Result result")
+    } else if let Some(action) = own.strip_suffix("_FeedbackMessage") {
+        format!("{id}\n{action}_Feedback feedback")
+    } else if let Some(service) = own.strip_suffix("_Event") {
+        let info = "service_msgs/ServiceEventInfo info";
+        format!("{info}\n{service}_Request[<=1] request\n{service}_Response[<=1] response")
+    } else if ["_SendGoal", "_GetResult", "CancelGoal"].iter().any(|end| own.ends_with(end)) {
+        format!("{own}_Request request_message\n{own}_Response response_message\n{own}_Event event_message")
+    } else {
+        return None;
+    })
 }
 
 /// The number of a type that is made of no others (`type_description_interfaces/msg/FieldType`).

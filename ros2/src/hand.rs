@@ -7,8 +7,8 @@ use tenax_hal_shim::wire::{About, Counters, Down, Senses, Slow};
 use tenax_hal_shim::words::{DriveSource, Line};
 
 use crate::message::{
-    DiagnosticArray, DiagnosticStatus, GripperCommand, Header, JointState, KeyValue, Margin, Slip, Tactile,
-    Time,
+    DiagnosticArray, DiagnosticStatus, Gripper, GripperCommand, Header, JointState, KeyValue, Margin, Slip,
+    Tactile, Time,
 };
 
 /// The setting that is the ceiling of forces, mN (`tenax_logic::setting::SettingId`).
@@ -55,6 +55,25 @@ fn opening(senses: &Senses) -> Option<f64> {
     let (mv, channel) = (mv_from_sample(senses.samples[OPENING]), &CHANNELS[OPENING]);
     let part = (f64::from(mv) - f64::from(channel.rest_mv)) / OPENING_SPAN_MV;
     (channel.low_mv..=channel.high_mv).contains(&mv).then_some(part.clamp(0.0, 1.0))
+}
+
+/// Gap of fingers that are closed, as a part of the hand's range.
+const CLOSED: f64 = 0.02;
+
+/// What an action says of the hand while this grasp goes on.
+pub fn gripper(slow: &Slow, senses: Option<&Senses>, range_m: f64, grasp: &Grasp) -> Gripper {
+    let (load_mn, part) = (slow.forces.map(|forces| forces.load_mn), senses.and_then(opening));
+    let opens = matches!(grasp.aim, Aim::Open { .. });
+    let reached_goal = match opens {
+        true => load_mn.is_some_and(|mn| mn < NOTHING_MN) && grasp.steps > OPENS_ON_FOR,
+        false => part.is_some_and(|part| part < CLOSED),
+    };
+    Gripper {
+        position: part.map_or(f64::NAN, |part| range_m * part),
+        effort: load_mn.map_or(f64::NAN, newtons),
+        stalled: !opens && load_mn.is_some_and(|mn| mn >= NOTHING_MN),
+        reached_goal,
+    }
 }
 
 /// What became of the object, from slow frame to slow frame.
@@ -201,13 +220,16 @@ impl Health {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Step {
     Send(Down),
+    Wait,
+    Done(&'static str),
+    /// It ended without what was asked for.
     Over(&'static str),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Aim {
-    /// Until it is felt: the board's own gentle grasp.
-    Felt,
+    /// Until it was felt for so many slow frames: the board's own gentle grasp.
+    Felt { for_frames: u32 },
     /// Until the load is this, mN, with this duty.
     Load { mn: i32, permille: u16 },
     /// Until nothing was felt for so many slow frames.
@@ -242,7 +264,7 @@ impl Grasp {
             let permille = (i64::from(mn) * 1_000 / i64::from(ceiling_mn)) as u16;
             Aim::Load { mn, permille: permille.saturating_add(100).clamp(CLOSE_PERMILLE_MIN, 1_000) }
         } else {
-            Aim::Felt
+            Aim::Felt { for_frames: 0 }
         };
         Ok(Self { aim, steps: 0 })
     }
@@ -252,18 +274,25 @@ impl Grasp {
         let step = self.steps;
         self.steps += 1;
         match &mut self.aim {
-            Aim::Felt if step == 0 => Step::Send(Down::Begin(Behaviour::GentleGrasp)),
-            Aim::Felt => Step::Over("the board closes until the object is felt"),
+            Aim::Felt { .. } if step == 0 => Step::Send(Down::Begin(Behaviour::GentleGrasp)),
+            Aim::Felt { for_frames } => {
+                *for_frames = if load_mn.is_some_and(|mn| mn >= NOTHING_MN) { *for_frames + 1 } else { 0 };
+                match *for_frames > OPENS_ON_FOR {
+                    true => Step::Done("the object is felt"),
+                    false if step >= CLOSES_FOR => Step::Over("ended: nothing was felt in 5 s"),
+                    false => Step::Wait,
+                }
+            }
             Aim::Load { mn, permille } => match load_mn {
                 None => Step::Over("ended: the force sensor gives no number"),
-                Some(load) if load >= *mn => Step::Over("the force is reached"),
+                Some(load) if load >= *mn => Step::Done("the force is reached"),
                 _ if step >= CLOSES_FOR => Step::Over("ended: the force was not reached in 5 s"),
                 Some(_) => drive(MotorDrive::Close(Duty::per_mille(*permille))),
             },
             Aim::Open { nothing_for } => {
                 *nothing_for = if load_mn.is_some_and(|mn| mn < NOTHING_MN) { *nothing_for + 1 } else { 0 };
                 if *nothing_for > OPENS_ON_FOR || step >= OPENS_FOR {
-                    Step::Over("open")
+                    Step::Done("open")
                 } else {
                     drive(MotorDrive::Open(Duty::per_mille(OPEN_PERMILLE)))
                 }

@@ -2,7 +2,7 @@
 
 use xxhash_rust::xxh3::xxh3_128;
 
-use crate::message::Message;
+use crate::message::{dds_name, type_hash};
 
 pub const GID: usize = 16;
 
@@ -17,8 +17,8 @@ pub struct Domain {
 }
 
 impl Domain {
-    fn hash<M: Message>(self) -> String {
-        if self.humble { NO_HASH.to_owned() } else { M::type_hash() }
+    fn hash(self, kind: &str) -> String {
+        if self.humble { NO_HASH.to_owned() } else { type_hash(kind) }
     }
 }
 
@@ -33,12 +33,15 @@ pub struct Node {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
     Publisher,
+    /// Its last message is for those who come later, too: reliable, transient local.
+    Latched,
     Subscription,
+    Service,
 }
 
-/// The key of a topic: `0/left/joint_states/sensor_msgs::msg::dds_::JointState_/RIHS01_...`.
-pub fn topic<M: Message>(domain: Domain, name: &str) -> String {
-    format!("{}/{}/{}/{}", domain.number, name.trim_matches('/'), M::dds_name(), domain.hash::<M>())
+/// The key of a topic or a service: `0/left/joint_states/sensor_msgs::msg::dds_::JointState_/RIHS01_...`.
+pub fn key(domain: Domain, name: &str, kind: &str) -> String {
+    format!("{}/{}/{}/{}", domain.number, name.trim_matches('/'), dds_name(kind), domain.hash(kind))
 }
 
 impl Node {
@@ -47,17 +50,19 @@ impl Node {
         format!("@ros2_lv/{number}/{session}/{id}/{id}/NN/%/%/{name}")
     }
 
-    /// The token of one of its topics, `depth` messages of which are kept; the rest is rmw_zenoh's default: reliable, volatile.
-    pub fn endpoint<M: Message>(&self, role: Role, entity: u32, topic: &str, depth: u32) -> String {
-        let Self { domain: Domain { number, .. }, session, id, name } = self;
-        let role = match role {
-            Role::Publisher => "MP",
-            Role::Subscription => "MS",
+    /// The token of one of its topics or services; what it does not say is rmw_zenoh's default: reliable, volatile, ten messages.
+    pub fn endpoint(&self, role: Role, entity: u32, name: &str, kind: &str) -> String {
+        let Self { domain: Domain { number, .. }, session, id, name: node } = self;
+        let (role, qos) = match role {
+            Role::Publisher => ("MP", "::,10"),
+            Role::Latched => ("MP", ":1:,1"),
+            Role::Subscription => ("MS", "::,10"),
+            Role::Service => ("SS", "::,10"),
         };
-        let topic = topic.replace('/', "%");
-        let (kind, hash) = (M::dds_name(), self.domain.hash::<M>());
+        let (topic, hash) = (name.replace('/', "%"), self.domain.hash(kind));
         format!(
-            "@ros2_lv/{number}/{session}/{id}/{entity}/{role}/%/%/{name}/{topic}/{kind}/{hash}/::,{depth}:,:,:,,"
+            "@ros2_lv/{number}/{session}/{id}/{entity}/{role}/%/%/{node}/{topic}/{}/{hash}/{qos}:,:,:,,",
+            dds_name(kind)
         )
     }
 }
@@ -75,6 +80,13 @@ pub struct Attachment {
 }
 
 impl Attachment {
+    pub fn of(bytes: &[u8]) -> Option<Self> {
+        let (number, rest) = bytes.split_first_chunk()?;
+        let (time, rest) = rest.split_first_chunk()?;
+        let gid = rest.strip_prefix(&[GID as u8])?.try_into().ok()?;
+        Some(Self { sequence: i64::from_le_bytes(*number), time_ns: i64::from_le_bytes(*time), gid })
+    }
+
     /// Number, time, and the id after its length.
     pub fn bytes(&self) -> Vec<u8> {
         let (number, time) = (self.sequence.to_le_bytes(), self.time_ns.to_le_bytes());

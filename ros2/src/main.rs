@@ -22,7 +22,9 @@ ROS 2 Jazzy or newer, or Humble with --humble, with rmw_zenoh (RMW_IMPLEMENTATIO
 `ros2 run rmw_zenoh_cpp rmw_zenohd`, or let the bridge be the router (--router-here).
 
 Publishes, 80 times a second: /NAME/joint_states (position: gap; effort: grip force, N), /NAME/slip, /NAME/margin, \
-/NAME/tactile; at each change and each second /NAME/object (none, held, slipping or lost); each second /diagnostics. Subscribes to /NAME/gripper_command (control_msgs/msg/GripperCommand): position 0 closes to \
+/NAME/tactile; at each change, and for who comes later, /NAME/object (none, held, slipping or lost); each second /diagnostics. Takes the actions \
+/NAME/gripper_cmd (control_msgs/action/GripperCommand) and /NAME/parallel_gripper_cmd (ParallelGripperCommand), and \
+control_msgs/msg/GripperCommand on the topic /NAME/gripper_command: position 0 closes to \
 max_effort, N (0: until the object is felt), above 0 opens. The board obeys only with consent at the hand, and below its \
 force ceiling.
 
@@ -32,7 +34,8 @@ Examples:
   cargo tenax bridge --port /dev/ttyACM0 --name left --port /dev/ttyACM1 --name right
   cargo tenax bridge --port /dev/ttyACM0 --name left=003900423231510400000001    that board, wherever it is plugged in
   ros2 topic echo /hand/joint_states
-  ros2 topic pub --once /hand/gripper_command control_msgs/msg/GripperCommand '{position: 0.0, max_effort: 5.0}'";
+  ros2 action send_goal --feedback /hand/gripper_cmd control_msgs/action/GripperCommand \
+'{command: {position: 0.0, max_effort: 5.0}}'";
 
 /// Bring fingertips into ROS 2 over zenoh, without a ROS install.
 #[derive(Debug, Parser)]

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::describe::{Definition, hash};
 
-pub const DEFINITIONS: [Definition; 11] = [
+pub const DEFINITIONS: [Definition<'static>; 24] = [
     Definition { name: "builtin_interfaces/msg/Time", text: "int32 sec\nuint32 nanosec" },
     Definition { name: "std_msgs/msg/Header", text: "builtin_interfaces/Time stamp\nstring frame_id" },
     Definition {
@@ -23,19 +23,56 @@ pub const DEFINITIONS: [Definition; 11] = [
     Definition { name: Tactile::NAME, text: include_str!("../tenax_msgs/msg/Tactile.msg") },
     Definition { name: Slip::NAME, text: include_str!("../tenax_msgs/msg/Slip.msg") },
     Definition { name: Margin::NAME, text: include_str!("../tenax_msgs/msg/Margin.msg") },
+    Definition { name: "unique_identifier_msgs/msg/UUID", text: "uint8[16] uuid" },
+    Definition {
+        name: "service_msgs/msg/ServiceEventInfo",
+        text: "uint8 event_type\nbuiltin_interfaces/Time stamp\nuint8[16] client_gid\nint64 sequence_number",
+    },
+    Definition {
+        name: "action_msgs/msg/GoalInfo",
+        text: "unique_identifier_msgs/UUID goal_id\nbuiltin_interfaces/Time stamp",
+    },
+    Definition { name: "action_msgs/msg/GoalStatus", text: "GoalInfo goal_info\nint8 status" },
+    Definition { name: GoalStatusArray::NAME, text: "GoalStatus[] status_list" },
+    Definition { name: "action_msgs/srv/CancelGoal_Request", text: "action_msgs/GoalInfo goal_info" },
+    Definition {
+        name: "action_msgs/srv/CancelGoal_Response",
+        text: "int8 return_code\naction_msgs/GoalInfo[] goals_canceling",
+    },
+    Definition {
+        name: "control_msgs/action/GripperCommand_Goal",
+        text: "control_msgs/GripperCommand command",
+    },
+    Definition { name: "control_msgs/action/GripperCommand_Result", text: GRIPPER },
+    Definition { name: "control_msgs/action/GripperCommand_Feedback", text: GRIPPER },
+    Definition {
+        name: "control_msgs/action/ParallelGripperCommand_Goal",
+        text: "sensor_msgs/JointState command",
+    },
+    Definition {
+        name: "control_msgs/action/ParallelGripperCommand_Result",
+        text: "sensor_msgs/JointState state\nbool stalled\nbool reached_goal",
+    },
+    Definition {
+        name: "control_msgs/action/ParallelGripperCommand_Feedback",
+        text: "sensor_msgs/JointState state",
+    },
 ];
+
+const GRIPPER: &str = "float64 position\nfloat64 effort\nbool stalled\nbool reached_goal";
 
 pub trait Message: Serialize + DeserializeOwned {
     const NAME: &'static str;
+}
 
-    fn type_hash() -> String {
-        hash(Self::NAME, &DEFINITIONS).unwrap_or_default()
-    }
+/// The hash of a message, a service (`action_msgs/srv/CancelGoal`) or a part of an action (`control_msgs/action/GripperCommand_SendGoal`).
+pub fn type_hash(kind: &str) -> String {
+    hash(kind, &DEFINITIONS).unwrap_or_default()
+}
 
-    fn dds_name() -> String {
-        let (path, name) = Self::NAME.rsplit_once('/').unwrap_or(("", Self::NAME));
-        format!("{}::dds_::{name}_", path.replace('/', "::"))
-    }
+pub fn dds_name(kind: &str) -> String {
+    let (path, name) = kind.rsplit_once('/').unwrap_or(("", kind));
+    format!("{}::dds_::{name}_", path.replace('/', "::"))
 }
 
 /// Since 1970.
@@ -167,4 +204,72 @@ pub struct Margin {
 
 impl Message for Margin {
     const NAME: &'static str = "tenax_msgs/msg/Margin";
+}
+
+pub type GoalId = [u8; 16];
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SendGoal<G> {
+    pub goal_id: GoalId,
+    pub goal: G,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct SendGoalResponse {
+    pub accepted: bool,
+    pub stamp: Time,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ResultResponse<R> {
+    pub status: i8,
+    pub result: R,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Feedback<F> {
+    pub goal_id: GoalId,
+    pub feedback: F,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct GoalInfo {
+    pub goal_id: GoalId,
+    pub stamp: Time,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct CancelResponse {
+    /// 0 cancelled, 2 no such goal, 3 its goal has ended.
+    pub return_code: i8,
+    pub goals_canceling: Vec<GoalInfo>,
+}
+
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct GoalStatusArray {
+    /// The status of each: 2 executing, 4 succeeded, 5 cancelled, 6 aborted.
+    pub status_list: Vec<(GoalInfo, i8)>,
+}
+
+impl Message for GoalStatusArray {
+    const NAME: &'static str = "action_msgs/msg/GoalStatusArray";
+}
+
+/// Result and feedback of the action `GripperCommand`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Gripper {
+    /// Gap, m, and grip force, N; no number where the board gives none.
+    pub position: f64,
+    pub effort: f64,
+    /// An object stops the fingers, and the position is reached.
+    pub stalled: bool,
+    pub reached_goal: bool,
+}
+
+/// Result of `ParallelGripperCommand`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ParallelGripper {
+    pub state: JointState,
+    pub stalled: bool,
+    pub reached_goal: bool,
 }

@@ -3,11 +3,11 @@
 
 use proptest::prelude::*;
 use tenax_ros2::cdr;
-use tenax_ros2::describe::hash;
+use tenax_ros2::describe::{Definition, hash};
 use tenax_ros2::key::{self, Attachment, Domain, Node, Role, gid};
 use tenax_ros2::message::{
-    DEFINITIONS, DiagnosticArray, DiagnosticStatus, GripperCommand, Header, JointState, KeyValue, Margin,
-    Message, Slip, Tactile, Time, Word,
+    DEFINITIONS, DiagnosticArray, DiagnosticStatus, GoalStatusArray, GripperCommand, Header, JointState,
+    KeyValue, Margin, Message, Slip, Tactile, Time, Word,
 };
 
 fn head() -> Header {
@@ -44,11 +44,31 @@ fn type_hashes_are_the_published_ones() {
         (Tactile::NAME, "9433f7d572f1804ddb1c7d3709794607394a1bfbd1cba9b31d0551f2b551cdb2"),
         (Slip::NAME, "c15a97cc44f874dc30c13dadf9169353511ddb7c941ced2a41bbc72d496daa0c"),
         (Margin::NAME, "1672a98bf9b50e1e49796b4dcc6a9dfa93ddaabfc2cf3a33bac08fae943ed763"),
+        ("action_msgs/srv/CancelGoal", "573d8b0a534451d7bc2ac8c5ffde8ac14b8593b7001175d0cd6516dcbeb8689a"),
+        (GoalStatusArray::NAME, "6c1684b00f177d37438febe6e709fc4e2b0d4248dca4854946f9ed8b30cda83e"),
+        // An action that everybody has: what is derived from ours is derived alike.
+        (
+            "example_interfaces/action/Fibonacci_SendGoal",
+            "d1a57fb2a4afe8c21e34fb10db206f16ce6729b28531141472df92277c55b557",
+        ),
+        (
+            "example_interfaces/action/Fibonacci_GetResult",
+            "1b0de0d5d29dc955d92f546706568428632771db13ec84c15ec1c1a59f424a57",
+        ),
+        (
+            "example_interfaces/action/Fibonacci_FeedbackMessage",
+            "c1de71afd52e49a89c53d8262366884185bc0a02f78ce051c4e46b0a7fe59bb2",
+        ),
     ];
-    assert_eq!(published.len(), DEFINITIONS.len());
+    let fibonacci =
+        [("Goal", "int32 order"), ("Result", "int32[] sequence"), ("Feedback", "int32[] sequence")];
+    let names = fibonacci.map(|(end, _)| format!("example_interfaces/action/Fibonacci_{end}"));
+    let fibonacci = names.iter().zip(fibonacci).map(|(name, (_, text))| Definition { name, text });
+    let known: Vec<Definition> = DEFINITIONS.into_iter().chain(fibonacci).collect();
     for (name, expected) in published {
-        assert_eq!(hash(name, &DEFINITIONS), Some(format!("RIHS01_{expected}")), "{name}");
+        assert_eq!(hash(name, &known), Some(format!("RIHS01_{expected}")), "{name}");
     }
+    assert!(DEFINITIONS.iter().all(|own| hash(own.name, &DEFINITIONS).is_some()));
     assert_eq!(hash("std_msgs/msg/String", &[]), None);
 }
 
@@ -119,23 +139,23 @@ fn keys_and_tokens_are_rmw_zenohs() {
     // As a ROS 2 node was heard to publish.
     let expected = "73/es_js_capture/sensor_msgs::msg::dds_::JointState_/\
                     RIHS01_a13ee3a330e346c9d87b5aa18d24e11690752bd33a0350f11c5882bc9179260e";
-    assert_eq!(key::topic::<JointState>(jazzy(73), "/es_js_capture"), expected);
+    assert_eq!(key::key(jazzy(73), "/es_js_capture", JointState::NAME), expected);
     assert!(
-        key::topic::<Slip>(jazzy(0), "/left/slip")
+        key::key(jazzy(0), "/left/slip", Slip::NAME)
             .starts_with("0/left/slip/tenax_msgs::msg::dds_::Slip_/RIHS01_")
     );
     let humble = Domain { number: 0, humble: true };
     let expected = "0/left/slip/tenax_msgs::msg::dds_::Slip_/TypeHashNotSupported";
-    assert_eq!(key::topic::<Slip>(humble, "/left/slip"), expected);
+    assert_eq!(key::key(humble, "/left/slip", Slip::NAME), expected);
     // The examples of rmw_zenoh's design, with another type.
     let session = "8b20917502ee955ac4476e0266340d5c".to_owned();
     let node = Node { domain: jazzy(2), session, id: 0, name: "talker".to_owned() };
     assert_eq!(node.token(), "@ros2_lv/2/8b20917502ee955ac4476e0266340d5c/0/0/NN/%/%/talker");
     let expected = "@ros2_lv/2/8b20917502ee955ac4476e0266340d5c/0/10/MP/%/%/talker/%chatter/\
                     sensor_msgs::msg::dds_::JointState_/\
-                    RIHS01_a13ee3a330e346c9d87b5aa18d24e11690752bd33a0350f11c5882bc9179260e/::,7:,:,:,,";
-    assert_eq!(node.endpoint::<JointState>(Role::Publisher, 10, "/chatter", 7), expected);
-    let heard = node.endpoint::<GripperCommand>(Role::Subscription, 11, "/left/gripper_command", 10);
+                    RIHS01_a13ee3a330e346c9d87b5aa18d24e11690752bd33a0350f11c5882bc9179260e/::,10:,:,:,,";
+    assert_eq!(node.endpoint(Role::Publisher, 10, "/chatter", JointState::NAME), expected);
+    let heard = node.endpoint(Role::Subscription, 11, "/left/gripper_command", GripperCommand::NAME);
     assert!(
         heard.contains("/0/11/MS/%/%/talker/%left%gripper_command/control_msgs::msg::dds_::GripperCommand_/")
     );

@@ -35,7 +35,7 @@ fn it_closes_to_the_force_and_drives_no_further() {
             };
             assert_eq!(duty.as_per_mille(), per_mille);
         }
-        assert_eq!(close.step(Some(mn)), Step::Over("the force is reached"), "{effort} N");
+        assert_eq!(close.step(Some(mn)), Step::Done("the force is reached"), "{effort} N");
     }
 }
 
@@ -54,7 +54,9 @@ fn without_a_force_or_for_ever_nothing_drives_and_it_opens_a_little_on() {
 fn no_effort_is_the_boards_gentle_grasp_once_and_what_is_no_command_is_refused() {
     let mut gentle = grasp(0.0, 0.0);
     assert_eq!(gentle.step(Some(0)), Step::Send(Down::Begin(Behaviour::GentleGrasp)));
-    assert!(matches!(gentle.step(Some(0)), Step::Over(_)));
+    assert_eq!([Some(0), None, Some(400)].map(|mn| gentle.step(mn)), [Step::Wait; 3]);
+    let ends = (0..400).map(|_| gentle.step(Some(400))).position(|step| matches!(step, Step::Done(_)));
+    assert_eq!(ends, Some(19), "felt for a quarter of a second");
     for (position, max_effort, ceiling) in [
         (f64::NAN, 1.0, CEILING_MN),
         (0.0, f64::INFINITY, CEILING_MN),

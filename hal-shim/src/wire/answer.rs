@@ -27,6 +27,8 @@ pub enum Refusal {
     Replayed,
     /// The line has driven the hand, or silenced the reflex, for too long: an active muscle, consent or waiting as long renews the time.
     HeldTooLong,
+    /// A setting of the transaction was refused, or one before it is missing: none is set.
+    Incomplete,
 }
 
 /// A setting's number (`tenax_logic::setting::SettingId`) and its value, in its unit.

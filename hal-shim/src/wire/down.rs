@@ -58,6 +58,14 @@ pub enum Down {
     /// Answer with an [`Answer::Last`](super::Answer::Last): messages before the last run ended in a fault, from this byte on.
     /// The board keeps them until a client asks from their end on, and so has read all.
     Last(u16),
+    /// Setting `n` of a transaction `of` that has `count`. The last one sets all of them; nothing changes before, or if one of them was refused
+    /// or did not come in order, or a setting has changed meanwhile.
+    SetOf {
+        of: u16,
+        n: u8,
+        count: u8,
+        setting: Setting,
+    },
 }
 
 impl Down {

@@ -20,7 +20,7 @@ use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::wire::{
     About, Answer, BAUD, BadFrame, Counters, DETECTORS_MAX, Down, FRAME_MAX, Forces, Identity, KEPT_MAX,
     Last, NetworkState, PIECE_MAX, Raw, Receiver, ResetCause, Restored, SETTINGS_MAX, SETTINGS_PER_ANSWER,
-    Senses, Setting, Slow, TickRecord, Up, WHY_MAX, encode,
+    Senses, Setting, Slow, TickRecord, Up, VERSION, WHY_MAX, encode,
 };
 use tenax_hal_shim::words::{Code, DriveSource, Fault, GripMode, Kept, Line, NoLesson};
 
@@ -132,10 +132,10 @@ fn another_version_is_named() {
     let crc = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC);
     let mut buffer = [0; FRAME_MAX];
     let flavor = CrcModifier::new(Cobs::try_new(Slice::new(&mut buffer)).unwrap(), crc.digest());
-    // The same envelope as `encode` writes, with version 9 and a message that this version does not know.
-    let message = (9_u8, 3_u16, 200_u8, 200_u8);
+    // The same envelope as `encode` writes, of the next version and with a message that this version does not know.
+    let message = (VERSION + 1, 3_u16, 200_u8, 200_u8);
     let bytes = postcard::serialize_with_flavor::<_, _, &mut [u8]>(&message, flavor).unwrap();
-    assert_eq!(receive::<Down>(bytes), [Err(BadFrame::Version(9))]);
+    assert_eq!(receive::<Down>(bytes), [Err(BadFrame::Version(VERSION + 1))]);
 }
 
 #[test]

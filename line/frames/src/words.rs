@@ -115,6 +115,7 @@ pub fn refusal_words(refusal: &Refusal) -> String {
         }
         Refusal::Loaded => "something presses on the finger, or is held",
         Refusal::SensorLost => "a sensor that it needs gives no number; `tenax monitor` says which",
+        Refusal::Incomplete => "another setting of its transaction was refused or did not come: none is set",
         other => return format!("{other:?}"),
     };
     text.to_owned()

@@ -1,5 +1,6 @@
 //! `tenax config`: a board's settings.
 
+use std::hash::{BuildHasher, RandomState};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -13,6 +14,9 @@ use tenax_frames::link::{ANSWER_WITHIN, Client};
 use tenax_frames::settings;
 use tenax_frames::tool::out;
 use tenax_frames::words::refusal_words;
+
+/// Transactions that are tried, if another client changes settings meanwhile or an answer is lost.
+const ATTEMPTS: u32 = 3;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -125,67 +129,57 @@ fn all(client: &mut Client) -> anyhow::Result<Vec<Setting>> {
     }
 }
 
-/// Sets all, or none, and reads them back. Fails with what was refused, and why; what was set before is set back.
+/// Sets all, or none, and reads them back. Fails with what was refused, and why.
 pub fn set(client: &mut Client, wanted: &[Setting]) -> anyhow::Result<()> {
     let before = all(client)?;
-    let (mut done, mut back) = (Vec::new(), Vec::new());
-    let changes = wanted.iter().filter(|own| !before.contains(own)).copied().collect();
-    let why = match set_each(client, changes, &mut done) {
-        Ok(refused) if refused.is_empty() => {
-            let told = || {
-                format!("set, and not read back: {}", wanted.iter().map(words).collect::<Vec<_>>().join(", "))
-            };
-            let now = all(client).with_context(told)?;
-            let other = wanted.iter().find(|own| !now.contains(own)).map(words);
-            ensure!(
-                other.is_none(),
-                "{} was set, and is not what the board now says",
-                other.unwrap_or_default()
-            );
-            return wanted.iter().try_for_each(|own| out::say!("{}", words(own)));
+    let changes: Vec<Setting> = wanted.iter().filter(|own| !before.contains(own)).copied().collect();
+    let other = |now: &[Setting]| wanted.iter().find(|own| !now.contains(own)).map(words);
+    for attempts_left in (0..ATTEMPTS).rev() {
+        let why = match transact(client, &changes) {
+            Ok(refused) if refused.is_empty() => break,
+            Ok(refused) if refused.iter().all(|(_, why)| *why == Refusal::Incomplete) => {
+                "settings are changed by another client at the same time".to_owned()
+            }
+            Ok(refused) => {
+                let told = refused
+                    .iter()
+                    .map(|(own, why)| format!("{} is refused: {}", words(own), refusal_words(why)));
+                bail!("{}. Nothing is changed", told.collect::<Vec<_>>().join("; "))
+            }
+            Err(error) => format!("{error:#}"),
+        };
+        let now = all(client).with_context(|| format!("{why}. The board has set all of them, or none"))?;
+        if other(&now).is_none() {
+            break;
         }
-        Ok(refused) => refused.join("; "),
-        Err(error) => format!("{error:#}"),
-    };
-    let old = before.into_iter().filter(|own| done.iter().any(|set| set.id == own.id)).collect();
-    let is_back = set_each(client, old, &mut back).is_ok();
-    let is_left = |set: &&Setting| !is_back || !back.iter().any(|own| own.id == set.id);
-    let left: Vec<String> = done.iter().filter(is_left).map(words).collect();
-    match left.is_empty() {
-        true => bail!("{why}. Nothing is changed"),
-        false => bail!("{why}. Set, and not set back: {}. All others are as they were", left.join(", ")),
+        ensure!(attempts_left > 0, "{why}. Nothing is changed");
     }
+    let other = other(&all(client).context("set, and not read back")?);
+    ensure!(other.is_none(), "{} was set, and is not what the board now says", other.unwrap_or_default());
+    wanted.iter().try_for_each(|own| out::say!("{}", words(own)))
 }
 
-/// Sets one after the other; what is out of its range once more after the others, which may move it. Returns what was refused.
-fn set_each(
-    client: &mut Client,
-    mut left: Vec<Setting>,
-    done: &mut Vec<Setting>,
-) -> anyhow::Result<Vec<String>> {
-    loop {
-        let (mut again, mut refused) = (Vec::new(), Vec::new());
-        for setting in &left {
-            // Of a line that ends before the answer nobody knows: it has to be set back, too.
-            done.push(*setting);
-            match client.ask(&Down::Set(*setting), ANSWER_WITHIN)? {
-                Answer::Setting(own) if own == *setting => {}
-                Answer::Refused(why) => {
-                    done.pop();
-                    refused.push(format!("{} is refused: {}", words(setting), refusal_words(&why)));
-                    again.push(*setting);
-                    if !matches!(why, Refusal::OutOfRange { .. } | Refusal::UnknownSetting) {
-                        return Ok(refused);
-                    }
+/// One transaction. Returns what was refused: then the board has changed nothing.
+fn transact(client: &mut Client, changes: &[Setting]) -> anyhow::Result<Vec<(Setting, Refusal)>> {
+    // Another client's transaction has another mark.
+    let of = RandomState::new().hash_one(()) as u16;
+    let count = changes.len() as u8;
+    let mut refused = Vec::new();
+    for (n, &setting) in (0..).zip(changes) {
+        match client.ask(&Down::SetOf { of, n, count, setting }, ANSWER_WITHIN)? {
+            Answer::Done => {}
+            // It is named already.
+            Answer::Refused(Refusal::Incomplete) if !refused.is_empty() => {}
+            Answer::Refused(why) => {
+                refused.push((setting, why));
+                if !matches!(why, Refusal::OutOfRange { .. } | Refusal::UnknownSetting) {
+                    break;
                 }
-                other => bail!("the board answers {other:?}"),
             }
+            other => bail!("the board answers {other:?}"),
         }
-        if again.is_empty() || again.len() == left.len() {
-            return Ok(refused);
-        }
-        left = again;
     }
+    Ok(refused)
 }
 
 fn words(setting: &Setting) -> String {

@@ -10,7 +10,20 @@ use tenax_hal_shim::wire::{DRIVE_HOLD_MAX_MS, Down, Refusal, Setting};
 use tenax_hal_shim::words::Line;
 
 use super::Fingertip;
+use crate::config::Config;
 use crate::grip::Grip;
+
+/// Settings of a transaction that is not complete.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Staged {
+    of: u16,
+    /// Number of the next one.
+    next: u8,
+    refused: bool,
+    /// Settings changed when it began.
+    since: u32,
+    config: Config,
+}
 
 impl Fingertip {
     /// The reason why the command was not carried out; nothing has changed then.
@@ -46,10 +59,8 @@ impl Fingertip {
                 self.link.ask(drive, u32::from(hold_ms) * FRAME_HZ / 1_000);
                 Ok(())
             }
-            Down::Set(Setting { id, value }) => {
-                let id = SettingId::from_number(id).ok_or(Refusal::UnknownSetting)?;
-                self.set(id, value)
-            }
+            Down::Set(setting) => self.stage(0, 0, 1, setting),
+            Down::SetOf { of, n, count, setting } => self.stage(of, n, count, setting),
             Down::Begin(what) => self.begin(what),
             Down::End => {
                 self.end(Ending::Stopped);
@@ -95,7 +106,7 @@ impl Fingertip {
 
     fn consents_to(&self, command: &Down) -> Result<(), Refusal> {
         // Trusting the line, or declaring that there is no wearer, needs consent by muscles or button, not by power-up.
-        let for_ever = matches!(*command, Down::Set(Setting { id, .. })
+        let for_ever = matches!(*command, Down::Set(Setting { id, .. }) | Down::SetOf { setting: Setting { id, .. }, .. }
             if [SettingId::LineTrusted.number(), SettingId::NoWearer.number()].contains(&id));
         let consents = match self.line() {
             Line::Reading => false,
@@ -105,13 +116,33 @@ impl Fingertip {
         if consents { Ok(()) } else { Err(Refusal::NotArmed) }
     }
 
-    pub(super) fn set(&mut self, id: SettingId, value: i32) -> Result<(), Refusal> {
+    #[inline(never)]
+    fn stage(&mut self, of: u16, n: u8, count: u8, setting: Setting) -> Result<(), Refusal> {
+        let since = self.settings_changed;
+        if n == 0 {
+            self.staged = Some(Staged { of, next: 0, refused: false, since, config: self.config });
+        }
+        let expected = |staged: &&mut Staged| (staged.of, staged.next, staged.since) == (of, n, since);
+        let staged = self.staged.as_mut().filter(expected).ok_or(Refusal::Incomplete)?;
+        staged.next = n.saturating_add(1);
+        let id = SettingId::from_number(setting.id).ok_or(Refusal::UnknownSetting);
         let out_of_range = |range: RangeInclusive<i32>| {
             let (min, max) = range.into_inner();
             Refusal::OutOfRange { min, max }
         };
-        self.config.set(id, value).map_err(out_of_range)?;
-        self.settings_changed = self.settings_changed.wrapping_add(1);
+        let set = id.and_then(|id| staged.config.set(id, setting.value).map_err(out_of_range));
+        staged.refused |= set.is_err();
+        set?;
+        if staged.next < count {
+            return Ok(());
+        }
+        let (refused, config) = (staged.refused, staged.config);
+        self.staged = None;
+        if refused {
+            return Err(Refusal::Incomplete);
+        }
+        self.config = config;
+        self.settings_changed = since.wrapping_add(1);
         Ok(())
     }
 }

@@ -6,17 +6,22 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use crate::hand::{self, Grasp, Health, Object, Step, ceiling_mn, header};
-use crate::key::Domain;
-use crate::message::{DiagnosticArray, GripperCommand, JointState, Margin, Slip, Tactile, Word};
+use crate::key::{Domain, Role};
+use crate::message::{
+    DiagnosticArray, Gripper, GripperCommand, JointState, Margin, Message, Slip, Tactile, Word,
+};
 use tenax_frames::link::{Board, Client};
 use tenax_hal_shim::channel::SLOW_HZ;
 use tenax_hal_shim::wire::{Answer, Down, Refusal, Senses, Slow, Up};
 use zenoh::Session;
 
+use super::action::{ABORTED, Action, SUCCEEDED};
 use super::network::{Graph, Publisher, now_ns};
 
 const ANSWER_WITHIN: Duration = Duration::from_millis(500);
 const AGAIN_AFTER: Duration = Duration::from_millis(500);
+/// Slow frames from one feedback of an action to the next.
+const FEED_EVERY: u32 = SLOW_HZ / 10;
 const DIAGNOSE_EVERY: Duration = Duration::from_secs(1);
 const SESSIONS_MAX: u32 = 3;
 
@@ -55,7 +60,7 @@ pub fn bridge(
         slip: graph.publisher::<Slip>(&format!("/{name}/slip"))?,
         margin: graph.publisher::<Margin>(&format!("/{name}/margin"))?,
         tactile: graph.publisher::<Tactile>(&format!("/{name}/tactile"))?,
-        object: graph.publisher::<Word>(&format!("/{name}/object"))?,
+        object: graph.publishes(Role::Latched, &format!("/{name}/object"), Word::NAME)?,
         diagnostics: graph.publisher::<DiagnosticArray>("/diagnostics")?,
     };
     let desk = Desk::default();
@@ -64,6 +69,7 @@ pub fn bridge(
         graph.subscription::<GripperCommand>(&format!("/{name}/gripper_command"), move |command| {
             *heard.lock().unwrap_or_else(PoisonError::into_inner) = Some(command);
         })?;
+    let mut actions = [Action::new(&mut graph, name, false)?, Action::new(&mut graph, name, true)?];
     let (mut health, mut board) = (Health::default(), hand.board.clone());
     while !stop.load(Ordering::Relaxed) {
         match board.open() {
@@ -75,11 +81,14 @@ pub fn bridge(
                     name,
                     topics: &mut topics,
                     desk: &desk,
+                    actions: &mut actions,
                     health: &mut health,
                     senses: None,
                     range_m: hand.range_m,
-                    object: (Object::default(), "", SLOW_HZ),
+                    object: (Object::default(), ""),
                     grasp: None,
+                    now: Gripper::default(),
+                    fed: 0,
                     sent: None,
                     sessions: 0,
                 };
@@ -90,6 +99,10 @@ pub fn bridge(
         }
         // No command waits for a line that comes back.
         *desk.lock().unwrap_or_else(PoisonError::into_inner) = None;
+        for action in &mut actions {
+            action.end(ABORTED, Gripper::default())?;
+            action.serve(|_| false)?;
+        }
         topics.diagnostics.publish(&health.diagnostics(name, now_ns()))?;
         thread::sleep(AGAIN_AFTER);
     }
@@ -101,12 +114,16 @@ struct Attendant<'a, 'b> {
     name: &'a str,
     topics: &'a mut Topics<'b>,
     desk: &'a Desk,
+    actions: &'a mut [Action<'b>; 2],
     health: &'a mut Health,
     senses: Option<Senses>,
     range_m: f64,
-    /// The object, the word that was published last, and slow frames since then.
-    object: (Object, &'static str, u32),
+    /// The object, and the word that was published last.
+    object: (Object, &'static str),
     grasp: Option<Grasp>,
+    /// What an action says now, and slow frames since its last feedback.
+    now: Gripper,
+    fed: u32,
     sent: Option<(u16, Down)>,
     /// Sessions that were asked for since the last command came.
     sessions: u32,
@@ -137,7 +154,7 @@ impl Attendant<'_, '_> {
         match message {
             Up::Slow(slow) => {
                 // The motor first.
-                self.command(&slow);
+                self.command(&slow)?;
                 self.publish(&slow)?;
             }
             Up::Senses(senses) => self.senses = Some(senses),
@@ -145,7 +162,7 @@ impl Attendant<'_, '_> {
             Up::About(about) | Up::Answer { answer: Answer::About(about), .. } => {
                 self.health.about = Some(about)
             }
-            Up::Answer { of, answer: Answer::Refused(refusal), .. } => self.refused(of, refusal),
+            Up::Answer { of, answer: Answer::Refused(refusal), .. } => self.refused(of, refusal)?,
             _ => {}
         }
         Ok(())
@@ -158,60 +175,93 @@ impl Attendant<'_, '_> {
         self.topics.slip.publish(&hand::slip(head(), slow))?;
         self.topics.margin.publish(&hand::margin(head(), slow))?;
         self.topics.tactile.publish(&hand::tactile(head(), slow, senses))?;
-        // At each change, and each second for who comes later.
-        let (object, said, since) = &mut self.object;
+        let (object, said) = &mut self.object;
         let word = object.follow(slow);
-        *since += 1;
-        if word != *said || *since >= SLOW_HZ {
-            (*said, *since) = (word, 0);
+        if word != *said {
+            *said = word;
             self.topics.object.publish(&Word { data: word.to_owned() })?;
         }
         Ok(())
     }
 
-    fn command(&mut self, slow: &Slow) {
+    fn command(&mut self, slow: &Slow) -> anyhow::Result<()> {
+        let ceiling = self.health.about.as_ref().and_then(ceiling_mn);
         let command = self.desk.lock().unwrap_or_else(PoisonError::into_inner).take();
         if let Some(command) = command {
-            let ceiling = self.health.about.as_ref().and_then(ceiling_mn);
-            self.sessions = 0;
+            // The one that goes on is not what is wanted any more.
+            self.over("another command came", ABORTED)?;
             match Grasp::of(&command, ceiling) {
-                Ok(grasp) => {
-                    self.grasp = Some(grasp);
-                    self.health.command = "goes on".to_owned();
-                }
-                // The one that goes on is not what is wanted any more.
-                Err(why) => self.over(why),
+                Ok(grasp) => self.begin(grasp),
+                Err(why) => self.over(why, ABORTED)?,
             }
         }
-        let load_mn = slow.forces.map(|forces| forces.load_mn);
-        match self.grasp.as_mut().map(|grasp| grasp.step(load_mn)) {
-            None => {}
-            Some(Step::Over(why)) => self.over(why),
-            Some(Step::Send(down)) => self.send(down),
+        for n in 0..self.actions.len() {
+            let mut begun = None;
+            let cancelled = self.actions[n].serve(|command| match Grasp::of(command, ceiling) {
+                Ok(grasp) => {
+                    begun = Some(grasp);
+                    true
+                }
+                Err(_) => false,
+            })?;
+            if cancelled || begun.is_some() {
+                // The gentle grasp is the board's own.
+                self.client.send(&Down::End)?;
+                self.grasp = None;
+                self.health.command = "cancelled".to_owned();
+            }
+            if let Some(grasp) = begun {
+                self.actions[1 - n].end(ABORTED, self.now)?;
+                self.begin(grasp);
+            }
         }
+        let Some(grasp) = &mut self.grasp else { return Ok(()) };
+        let step = grasp.step(slow.forces.map(|forces| forces.load_mn));
+        self.now = hand::gripper(slow, self.senses.as_ref(), self.range_m, grasp);
+        match step {
+            Step::Wait => {}
+            Step::Done(why) => self.over(why, SUCCEEDED)?,
+            Step::Over(why) => self.over(why, if self.now.reached_goal { SUCCEEDED } else { ABORTED })?,
+            Step::Send(down) => self.send(down)?,
+        }
+        self.fed += 1;
+        if self.fed >= FEED_EVERY {
+            self.fed = 0;
+            let now = self.now;
+            self.actions.iter_mut().try_for_each(|action| action.feed(now))?;
+        }
+        Ok(())
     }
 
-    fn send(&mut self, down: Down) {
+    fn begin(&mut self, grasp: Grasp) {
+        (self.grasp, self.sessions, self.fed) = (Some(grasp), 0, 0);
+        self.health.command = "goes on".to_owned();
+    }
+
+    fn send(&mut self, down: Down) -> anyhow::Result<()> {
         match self.client.send(&down) {
             Ok(number) => self.sent = Some((number, down)),
-            Err(error) => self.over(&format!("{error:#}")),
+            Err(error) => self.over(&format!("{error:#}"), ABORTED)?,
         }
+        Ok(())
     }
 
     /// The board has the last word. Without a session one is opened, and the step is sent once more.
-    fn refused(&mut self, of: u16, refusal: Refusal) {
-        let Some((_, down)) = self.sent.take_if(|(number, _)| *number == of) else { return };
+    fn refused(&mut self, of: u16, refusal: Refusal) -> anyhow::Result<()> {
+        let Some((_, down)) = self.sent.take_if(|(number, _)| *number == of) else { return Ok(()) };
         if matches!(refusal, Refusal::NoSession | Refusal::Replayed) && self.sessions < SESSIONS_MAX {
             self.sessions += 1;
             if let Ok(true) = self.client.open_session(ANSWER_WITHIN) {
                 return self.send(down);
             }
         }
-        self.over(&format!("refused by the board: {refusal:?}"));
+        self.over(&format!("refused by the board: {refusal:?}"), ABORTED)
     }
 
-    fn over(&mut self, why: &str) {
+    fn over(&mut self, why: &str, status: i8) -> anyhow::Result<()> {
         self.grasp = None;
         self.health.command = why.to_owned();
+        let now = self.now;
+        self.actions.iter_mut().try_for_each(|action| action.end(status, now))
     }
 }

@@ -6,12 +6,15 @@ use crate::cdr;
 use crate::key::{self, Attachment, Domain, GID, Node, Role, gid};
 use crate::message::Message;
 use anyhow::{Context, anyhow, bail};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 use zenoh::liveliness::LivelinessToken;
 use zenoh::pubsub::Subscriber;
 use zenoh::qos::CongestionControl;
+use zenoh::query::{Query, Queryable};
 use zenoh::{Config, Session, Wait};
+use zenoh_ext::{AdvancedPublisher, AdvancedPublisherBuilderExt, CacheConfig};
 
-const DEPTH: u32 = 10;
 const ROUTER_WITHIN: Duration = Duration::from_secs(3);
 const LOOK_EVERY: Duration = Duration::from_millis(20);
 
@@ -95,9 +98,20 @@ impl<'a> Graph<'a> {
     }
 
     pub fn publisher<M: Message>(&mut self, topic: &str) -> anyhow::Result<Publisher<'a>> {
-        let token = self.endpoint::<M>(Role::Publisher, topic)?;
-        let key = key::topic::<M>(self.node.domain, topic);
+        self.publishes(Role::Publisher, topic, M::NAME)
+    }
+
+    /// `Role::Latched`: who subscribes later hears the last message, too.
+    pub fn publishes(&mut self, role: Role, topic: &str, kind: &str) -> anyhow::Result<Publisher<'a>> {
+        let token = self.endpoint(role, topic, kind)?;
+        let key = key::key(self.node.domain, topic, kind);
         let declared = self.session.declare_publisher(key).congestion_control(CongestionControl::Drop);
+        let declared = match role {
+            Role::Latched => {
+                declared.advanced().cache(CacheConfig::default().max_samples(1)).publisher_detection()
+            }
+            _ => declared.advanced(),
+        };
         let publisher = declared.wait().map_err(|error| anyhow!("{topic}: {error}"))?;
         Ok(Publisher { publisher, gid: gid(&token), sequence: 0 })
     }
@@ -108,8 +122,8 @@ impl<'a> Graph<'a> {
         topic: &str,
         hear: impl Fn(M) + Send + Sync + 'static,
     ) -> anyhow::Result<Subscriber<()>> {
-        self.endpoint::<M>(Role::Subscription, topic)?;
-        let declared = self.session.declare_subscriber(key::topic::<M>(self.node.domain, topic));
+        self.endpoint(Role::Subscription, topic, M::NAME)?;
+        let declared = self.session.declare_subscriber(key::key(self.node.domain, topic, M::NAME));
         let declared = declared.callback(move |sample| {
             if let Some(message) = cdr::message(&sample.payload().to_bytes()) {
                 hear(message);
@@ -118,24 +132,59 @@ impl<'a> Graph<'a> {
         declared.wait().map_err(|error| anyhow!("{topic}: {error}")).context("cannot listen")
     }
 
-    fn endpoint<M: Message>(&mut self, role: Role, topic: &str) -> anyhow::Result<String> {
+    /// A service: each request goes to `ask`, on a thread of zenoh's.
+    pub fn service(
+        &mut self,
+        name: &str,
+        kind: &str,
+        ask: impl Fn(Request) + Send + Sync + 'static,
+    ) -> anyhow::Result<Queryable<()>> {
+        self.endpoint(Role::Service, name, kind)?;
+        let key = key::key(self.node.domain, name, kind);
+        let declared = self.session.declare_queryable(key.clone()).complete(true);
+        let declared = declared.callback(move |query| ask(Request { query, key: key.clone() }));
+        declared.wait().map_err(|error| anyhow!("{name}: {error}")).context("cannot serve")
+    }
+
+    fn endpoint(&mut self, role: Role, name: &str, kind: &str) -> anyhow::Result<String> {
         self.entities += 1;
         // Numbers are the session's: a node has room for a hundred.
         let entity = self.node.id * 100 + self.entities;
-        let token = self.node.endpoint::<M>(role, entity, topic, DEPTH);
+        let token = self.node.endpoint(role, entity, name, kind);
         self.live(&token)?;
         Ok(token)
     }
 }
 
+/// A request of a service, until it is answered or dropped.
+pub struct Request {
+    query: Query,
+    key: String,
+}
+
+impl Request {
+    pub fn message<M: DeserializeOwned>(&self) -> Option<M> {
+        cdr::message(&self.query.payload()?.to_bytes())
+    }
+
+    /// The client knows its request by its own number and id. Without them, or if it has gone, nothing is sent.
+    pub fn answer(&self, message: &impl Serialize) {
+        let attached = self.query.attachment().and_then(|bytes| Attachment::of(&bytes.to_bytes()));
+        if let (Some(attached), Some(payload)) = (attached, cdr::payload(message)) {
+            let attached = Attachment { time_ns: now_ns().cast_signed(), ..attached };
+            let _gone = self.query.reply(&self.key, payload).attachment(attached.bytes()).wait();
+        }
+    }
+}
+
 pub struct Publisher<'a> {
-    publisher: zenoh::pubsub::Publisher<'a>,
+    publisher: AdvancedPublisher<'a>,
     gid: [u8; GID],
     sequence: i64,
 }
 
 impl Publisher<'_> {
-    pub fn publish(&mut self, message: &impl Message) -> anyhow::Result<()> {
+    pub fn publish(&mut self, message: &impl Serialize) -> anyhow::Result<()> {
         let payload = cdr::payload(message).context("no CDR")?;
         self.sequence += 1;
         let attachment =

@@ -9,13 +9,19 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use common::Served;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 use tenax_frames::link::Board;
 use tenax_ros2::bridge::hand::{Hand, bridge};
 use tenax_ros2::bridge::network::{Place, open};
-use tenax_ros2::key::{Attachment, Domain, topic};
-use tenax_ros2::message::{DiagnosticArray, GripperCommand, JointState, Message, Slip, Word};
-use tenax_ros2::{cdr, key};
+use tenax_ros2::key::{Attachment, Domain, key};
+use tenax_ros2::message::{
+    CancelResponse, DiagnosticArray, Feedback, GoalId, GoalInfo, GoalStatusArray, Gripper, GripperCommand,
+    JointState, Message, ParallelGripper, ResultResponse, SendGoal, SendGoalResponse, Slip, Word,
+};
+use tenax_ros2::{cdr, key as keys};
 use zenoh::{Session, Wait};
+use zenoh_ext::{AdvancedSubscriberBuilderExt, HistoryConfig};
 
 const DOMAIN: Domain = Domain { number: 7, humble: false };
 const WITHIN: Duration = Duration::from_secs(10);
@@ -29,22 +35,67 @@ struct Ros<'a> {
 
 impl Ros<'_> {
     fn hear<M: Message + Send + 'static>(&self, name: &str) -> Receiver<(M, Attachment)> {
+        self.hear_kind(name, M::NAME, None)
+    }
+
+    /// As a subscription that is transient local: the message before it is heard, too.
+    fn latched<M: Message + Send + 'static>(&self, name: &str) -> Receiver<(M, Attachment)> {
+        let history = HistoryConfig::default().detect_late_publishers().max_samples(1);
+        self.hear_kind(name, M::NAME, Some(history))
+    }
+
+    fn hear_kind<M: DeserializeOwned + Send + 'static>(
+        &self,
+        name: &str,
+        kind: &str,
+        history: Option<HistoryConfig>,
+    ) -> Receiver<(M, Attachment)> {
         let (told, hears) = channel();
-        let declared = self.session.declare_subscriber(topic::<M>(DOMAIN, name)).callback(move |sample| {
+        let declared = self.session.declare_subscriber(key(DOMAIN, name, kind)).callback(move |sample| {
             let message = cdr::message::<M>(&sample.payload().to_bytes()).expect("it decodes");
             let attached = sample.attachment().expect("rmw_zenoh drops what has none").to_bytes();
-            let attached: [u8; 33] = attached[..].try_into().expect("33 bytes");
-            let number = |at: usize| i64::from_le_bytes(attached[at..at + 8].try_into().unwrap());
-            let gid = attached[17..].try_into().unwrap();
-            let _gone = told.send((message, Attachment { sequence: number(0), time_ns: number(8), gid }));
+            let _gone = told.send((message, Attachment::of(&attached).expect("33 bytes")));
         });
-        declared.background().wait().unwrap();
+        match history {
+            None => declared.background().wait().unwrap(),
+            Some(history) => declared.advanced().history(history).background().wait().unwrap(),
+        }
         hears
+    }
+
+    /// A request as rmw_zenoh's client sends it: all complete servers, its number and its id attached.
+    fn ask<A: DeserializeOwned>(&self, name: &str, kind: &str, request: &impl Serialize) -> A {
+        let attached = Attachment { sequence: 7, time_ns: 1, gid: [9; 16] };
+        let replies = self.session.get(key(DOMAIN, name, kind)).payload(cdr::payload(request).unwrap());
+        let replies = replies.attachment(attached.bytes()).target(zenoh::query::QueryTarget::AllComplete);
+        let reply =
+            replies.timeout(WITHIN).wait().unwrap().recv().unwrap_or_else(|_| panic!("{name}: silence"));
+        let sample = reply.into_result().unwrap();
+        let own =
+            Attachment::of(&sample.attachment().expect("rmw_zenoh drops what has none").to_bytes()).unwrap();
+        assert!(own.time_ns > 1 && (own.sequence, own.gid) == (7, [9; 16]), "{own:?}");
+        cdr::message(&sample.payload().to_bytes()).expect("it decodes")
+    }
+
+    fn goal<G: Serialize>(&self, action: &str, kind: &str, goal_id: GoalId, goal: G) -> bool {
+        let (name, kind) = (format!("/left/{action}/_action/send_goal"), format!("{kind}_SendGoal"));
+        self.ask::<SendGoalResponse>(&name, &kind, &SendGoal { goal_id, goal }).accepted
+    }
+
+    fn result<R: DeserializeOwned>(&self, action: &str, kind: &str, goal_id: GoalId) -> ResultResponse<R> {
+        self.ask(&format!("/left/{action}/_action/get_result"), &format!("{kind}_GetResult"), &goal_id)
+    }
+
+    fn cancel(&self, goal_id: GoalId) -> (i8, usize) {
+        let asked = GoalInfo { goal_id, ..GoalInfo::default() };
+        let name = "/left/gripper_cmd/_action/cancel_goal";
+        let answer: CancelResponse = self.ask(name, "action_msgs/srv/CancelGoal", &asked);
+        (answer.return_code, answer.goals_canceling.len())
     }
 
     fn grip(&self, position: f64, max_effort: f64) {
         let payload = cdr::payload(&GripperCommand { position, max_effort }).unwrap();
-        self.session.put(topic::<GripperCommand>(DOMAIN, "/left/gripper_command"), payload).wait().unwrap();
+        self.session.put(key(DOMAIN, "/left/gripper_command", GripperCommand::NAME), payload).wait().unwrap();
     }
 }
 
@@ -112,8 +163,12 @@ fn every_joint_state_arrives_in_order_and_the_graph_knows_the_hand() {
             tokens.into_iter().map(|reply| reply.result().unwrap().key_expr().to_string()).collect();
         assert!(tokens.iter().any(|token| token.ends_with("/NN/%/%/tenax_left")), "{tokens:?}");
         let joint = tokens.iter().find(|token| token.contains("%left%joint_states")).unwrap();
-        assert_eq!(key::gid(joint), attached.gid, "the id is its token's");
-        assert_eq!(tokens.len(), 8, "a node, six topics and the one it hears: {tokens:?}");
+        assert_eq!(keys::gid(joint), attached.gid, "the id is its token's");
+        assert_eq!(
+            tokens.len(),
+            18,
+            "a node, six topics and the one it hears, five of each action: {tokens:?}"
+        );
     });
 }
 
@@ -122,7 +177,7 @@ fn with_consent_a_command_closes_to_its_force_and_opens_again() {
     with(CONSENTING, |ros| {
         let (joints, slip) = (ros.hear::<JointState>("/left/joint_states"), ros.hear::<Slip>("/left/slip"));
         let diagnostics = ros.hear::<DiagnosticArray>("/diagnostics");
-        let object = ros.hear::<Word>("/left/object");
+        let object = ros.latched::<Word>("/left/object");
         wait_for(&slip, "it never consents", |slip| slip.line_may_command);
         wait_for(&object, "it holds something", |object| object.data == "none");
         let gap = |joints: &JointState| joints.position.first().copied().unwrap_or(f64::NAN);
@@ -161,5 +216,71 @@ fn without_consent_a_command_is_refused_and_moves_nothing() {
             ros.grip(f64::NAN, 0.0);
             wait_for(&diagnostics, "not said", |said| said_of_command(said).contains("no number"));
         }
+    });
+}
+
+const GRIPPER: &str = "control_msgs/action/GripperCommand";
+const PARALLEL: &str = "control_msgs/action/ParallelGripperCommand";
+
+#[test]
+fn a_goal_is_taken_fed_back_cancelled_and_ends_with_its_result() {
+    with(CONSENTING, |ros| {
+        let slip = ros.hear::<Slip>("/left/slip");
+        wait_for(&slip, "it never consents", |slip| slip.line_may_command);
+        let feedback = format!("{GRIPPER}_FeedbackMessage");
+        let feedback =
+            ros.hear_kind::<Feedback<Gripper>>("/left/gripper_cmd/_action/feedback", &feedback, None);
+        let close = GripperCommand { position: 0.0, max_effort: 5.0 };
+        assert!(!ros.goal(
+            "gripper_cmd",
+            GRIPPER,
+            [9; 16],
+            GripperCommand { position: f64::NAN, max_effort: 1.0 }
+        ));
+
+        assert!(ros.goal("gripper_cmd", GRIPPER, [1; 16], close));
+        assert_eq!([ros.cancel([8; 16]), ros.cancel([1; 16]), ros.cancel([1; 16])], [(2, 0), (0, 1), (3, 0)]);
+        assert_eq!(ros.result::<Gripper>("gripper_cmd", GRIPPER, [1; 16]).status, 5);
+        assert_eq!(ros.result::<Gripper>("gripper_cmd", GRIPPER, [8; 16]).status, 0);
+
+        assert!(ros.goal("gripper_cmd", GRIPPER, [2; 16], close));
+        assert!(!ros.goal("gripper_cmd", GRIPPER, [2; 16], close), "an id is taken once");
+        let fed =
+            wait_for(&feedback, "no feedback", |fed| fed.goal_id == [2; 16] && fed.feedback.position > 0.0);
+        assert!(!fed.feedback.reached_goal, "{fed:?}");
+        let ResultResponse { status, result } = ros.result::<Gripper>("gripper_cmd", GRIPPER, [2; 16]);
+        assert!(status == 4 && result.stalled && !result.reached_goal, "{status}: {result:?}");
+        assert!(result.effort >= 5.0 && result.position > 0.0, "{result:?}");
+
+        // Who comes now still hears how all goals ended.
+        let told = ros.latched::<GoalStatusArray>("/left/gripper_cmd/_action/status");
+        let told = wait_for(&told, "nothing is kept", |_| true).status_list;
+        assert_eq!(
+            told.iter().map(|(info, status)| (info.goal_id[0], *status)).collect::<Vec<_>>(),
+            [(1, 5), (2, 4)]
+        );
+
+        let opened = JointState { position: vec![0.05], ..JointState::default() };
+        assert!(ros.goal("parallel_gripper_cmd", PARALLEL, [3; 16], opened));
+        let ResultResponse { status, result } =
+            ros.result::<ParallelGripper>("parallel_gripper_cmd", PARALLEL, [3; 16]);
+        assert!(status == 4 && result.reached_goal && !result.stalled, "{status}: {result:?}");
+        assert!(result.state.effort[0] < 0.3, "{result:?}");
+    });
+}
+
+#[test]
+fn a_goal_without_consent_is_aborted() {
+    with("glass", |ros| {
+        let joints = ros.hear::<JointState>("/left/joint_states");
+        wait_for(&joints, "it holds nothing", |joints| force(joints) > 7.0);
+        assert!(ros.goal(
+            "gripper_cmd",
+            GRIPPER,
+            [1; 16],
+            GripperCommand { position: 0.05, max_effort: 0.0 }
+        ));
+        assert_eq!(ros.result::<Gripper>("gripper_cmd", GRIPPER, [1; 16]).status, 6);
+        assert!(newest(&joints) > 7.0);
     });
 }
