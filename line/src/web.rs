@@ -15,7 +15,6 @@ use std::time::{Duration, SystemTime};
 use anyhow::anyhow;
 use serde_json::{Value, json};
 use tenax_frames::link::Target;
-use tenax_frames::tool::workspace;
 use tenax_hal_shim::wire::Down;
 use tiny_http::{Header, Method, Request, Response, Server};
 
@@ -34,7 +33,6 @@ const FILES: [(&str, &str, &str); 9] = [
     ("/panels.js", "text/javascript", include_str!("../../page/www/panels.js")),
     ("/icon.svg", "image/svg+xml", include_str!("../../page/www/icon.svg")),
 ];
-const MACHINE: &str = "target/wasm32-unknown-unknown/page/tenax_page.wasm";
 const EVENT_EVERY: Duration = Duration::from_millis(50);
 /// Longest line for the bench or the player, bytes.
 const ACT_MAX: usize = 40;
@@ -174,13 +172,9 @@ impl Web {
     }
 }
 
-/// Status, kind and content of a file of the page; the bench's machine is served where `cargo tenax page` has built it.
+/// Status, kind and content of a file of the page. What needs its machine, bench and Web Serial, is not served.
 fn file(path: &str) -> Option<(u16, &'static str, Vec<u8>)> {
     let path = if path == "/" { "/index.html" } else { path };
-    if path == "/tenax.wasm" {
-        let machine = std::fs::read(workspace::root().ok()?.join(MACHINE)).ok()?;
-        return Some((200, "application/wasm", machine));
-    }
     let (_, kind, text) = FILES.iter().find(|(name, ..)| *name == path)?;
     // The page then watches this server.
     Some((200, *kind, text.replace("<html ", "<html data-monitor ").into_bytes()))

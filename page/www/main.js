@@ -83,16 +83,21 @@ function merge(change) {
 const can = () => settings.control && kind !== "file";
 const post = async path => { const answer = await source.post(path); at("refused").textContent = answer.status < 300 ? "" : answer.text; dirty = true; };
 
-// Pictures: as often as the screen is drawn anew; twice a second where the system asks for no motion.
-let drawn = 0, pictures = 0;
+// Pictures: as often as the screen is drawn anew, words ten times a second; all twice a second where the system asks for no motion.
+let drawn = 0, read = 0, unread = false, pictures = 0;
 function picture(now) {
   requestAnimationFrame(picture);
-  if (!dirty || still || (calm.matches && now - drawn < 500)) return;
-  [dirty, drawn] = [false, now];
-  document.body.dataset.pictures = ++pictures;
+  if (!(dirty || unread) || still || (calm.matches && now - drawn < 500)) return;
   const beside = NAMES[setup.beside];
-  stage.draw(at("stage"), scene, colours, beside);
-  plots.draw(last, can());
+  if (dirty) {
+    [dirty, drawn] = [false, now];
+    document.body.dataset.pictures = ++pictures;
+    stage.draw(at("stage"), scene, colours, beside);
+    plots.draw(last, can());
+  }
+  unread = now - read < 100;
+  if (unread) return;
+  read = now;
   state(last, fates, traces.points, arrivals);
   score(scene, beside);
   keys(last.bench, can(), post);
@@ -109,7 +114,10 @@ function show(name) {
   at("keys").hidden = name !== "bench" && !served;
   at("selftest-box").hidden = name === "file";
 }
-async function change(name, begin) {
+// One change of the source after the other.
+let turn = Promise.resolve();
+const change = (name, begin) => { turn = turn.then(() => changed(name, begin)); return turn; };
+async function changed(name, begin) {
   try {
     if (kind === "bench" && playing) await play(false);
     source?.close();
@@ -138,7 +146,7 @@ async function open_bench() {
   await source.open({ scene: setup.scene, seed: setup.seed, beside, settings: setup.settings });
   link();
 }
-const bench = async begins => { await change("bench", open_bench); if (begins && scene) await play(true); };
+const bench = begins => change("bench", async () => { await open_bench(); if (begins) await play(true); });
 async function play(on) {
   playing = on;
   at("play").textContent = on ? "pause" : "play";
@@ -179,9 +187,9 @@ function wire() {
   at("calibrate").onclick = () => post("/calibrate");
   at("to-file").onclick = () => at("file").click();
   at("file").onchange = () => at("file").files[0] && file(at("file").files[0]);
-  document.ondragover = event => { event.preventDefault(); document.body.classList.add("dragging"); };
+  if (!served) document.ondragover = event => { event.preventDefault(); document.body.classList.add("dragging"); };
   document.ondragleave = event => { if (!event.relatedTarget) document.body.classList.remove("dragging"); };
-  document.ondrop = event => { event.preventDefault(); document.body.classList.remove("dragging"); if (event.dataTransfer.files[0]) file(event.dataTransfer.files[0]); };
+  if (!served) document.ondrop = event => { event.preventDefault(); document.body.classList.remove("dragging"); if (event.dataTransfer.files[0]) file(event.dataTransfer.files[0]); };
   at("stopped").onclick = () => post("/play/pause");
   at("loop").onchange = () => post("/play/loop");
   at("seek").onchange = () => { post("/play/" + at("seek").value); at("seek").blur(); };
@@ -211,4 +219,6 @@ if (served) {
   settings.of(source);
 } else {
   bench(!calm.matches);
+  // Once loaded, it works without a network.
+  navigator.serviceWorker?.register("offline.js").catch(() => {});
 }
