@@ -9,6 +9,8 @@ use tenax_hal_shim::wire::{Answer, Down, Refusal, Up};
 use tenax_line::view::View;
 
 const ANSWER_WITHIN_S: f64 = 1.0;
+/// Times that a command is sent which does no more twice than once: a board that is slow skips some.
+const TRIES: u32 = 3;
 /// Readings stream for twice as long as until they are asked for again.
 const STREAM_EVERY_S: f64 = 5.0;
 const SESSIONS_MAX: u32 = 4;
@@ -18,8 +20,8 @@ pub struct Talker {
     pub view: View,
     inbox: Inbox,
     encoder: Encoder,
-    /// Number and time of the command whose answer is waited for.
-    asked: Option<(u16, f64, Down)>,
+    /// Number and time of the command whose answer is waited for, and how often it was sent.
+    asked: Option<(u16, f64, Down, u32)>,
     waiting: VecDeque<Down>,
     sessions: u32,
     streamed_s: Option<f64>,
@@ -38,13 +40,20 @@ impl Talker {
             self.view.frame(frame.as_ref().map_err(|bad| *bad), self.inbox.counts());
             if let Ok(heard) = &frame
                 && let Up::Answer { of, answer, .. } = &heard.received.message
-                && let Some((_, _, command)) = self.asked.take_if(|(number, ..)| *number == *of)
+                && let Some((_, _, command, _)) = self.asked.take_if(|(number, ..)| *number == *of)
             {
                 self.answered(command, answer, now_s);
             }
         }
-        if let Some((_, _, command)) = self.asked.take_if(|(_, at_s, _)| now_s - *at_s > ANSWER_WITHIN_S) {
-            self.view.say(&format!("> {command:?}: no answer"));
+        if let Some((_, _, command, tries)) =
+            self.asked.take_if(|(_, at_s, ..)| now_s - *at_s > ANSWER_WITHIN_S)
+        {
+            let repeats = command.reads() || matches!(command, Down::Set(_) | Down::Hello);
+            if repeats && tries < TRIES {
+                self.put(command, now_s, tries + 1);
+            } else {
+                self.view.say(&format!("> {command:?}: no answer"));
+            }
         }
         if self.streamed_s.is_none_or(|at_s| now_s - at_s >= STREAM_EVERY_S) {
             let hold_s = 2 * STREAM_EVERY_S as u16;
@@ -54,7 +63,7 @@ impl Talker {
         if self.asked.is_none()
             && let Some(command) = self.waiting.pop_front()
         {
-            self.put(command, now_s);
+            self.put(command, now_s, 1);
         }
         std::mem::take(&mut self.out)
     }
@@ -64,9 +73,9 @@ impl Talker {
             Answer::Refused(Refusal::NoSession | Refusal::Replayed) if self.sessions < SESSIONS_MAX => {
                 self.sessions += 1;
                 self.waiting.push_front(command);
-                self.put(Down::Hello, now_s);
+                self.put(Down::Hello, now_s, 1);
             }
-            Answer::Nonce(nonce) => self.put(Down::Open { nonce: *nonce }, now_s),
+            Answer::Nonce(nonce) => self.put(Down::Open { nonce: *nonce }, now_s, 1),
             _ if matches!(command, Down::Open { .. } | Down::About | Down::Last(_)) => {}
             _ => {
                 self.sessions = 0;
@@ -75,9 +84,9 @@ impl Talker {
         }
     }
 
-    fn put(&mut self, command: Down, now_s: f64) {
+    fn put(&mut self, command: Down, now_s: f64, tries: u32) {
         let number = self.send(&command);
-        self.asked = Some((number, now_s, command));
+        self.asked = Some((number, now_s, command, tries));
     }
 
     fn send(&mut self, command: &Down) -> u16 {

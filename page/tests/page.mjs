@@ -58,7 +58,7 @@ async function opened(place, options = {}, before = () => {}) {
   page.begun = performance.now();
   await page.goto(place);
   page.loaded_ms = performance.now() - page.begun;
-  page.until = (what, is_so, value, timeout = 30_000) => page.waitForFunction(is_so, value, { timeout, polling: 50 }).catch(() => assert.fail(`never ${what}`));
+  page.until = (what, is_so, value, timeout = 30_000) => page.waitForFunction(is_so, value, { timeout, polling: 50 }).catch(async () => assert.fail(`never ${what}: ${await page.textContent("#log").catch(() => "")}`));
   page.shot = async name => { if (shots) await page.screenshot({ path: `${shots}/${name}.png`, fullPage: true }); };
   return page;
 }
@@ -95,6 +95,13 @@ try {
   await page.selectOption("#scene", "bench");
   await page.until("the link", () => location.hash.includes("scene=bench"));
   await time(page);
+  // The dashed line of S1, from 100 mV to about 60.
+  const { x, y } = await page.locator(".plot canvas").first().boundingBox();
+  await page.mouse.move(x + 200, y + 20);
+  await page.mouse.down();
+  await page.mouse.move(x + 200, y + 39, { steps: 4 });
+  await page.mouse.up();
+  await page.until("a dragged threshold", () => /> s1-mv = [56]\d mV/.test(document.querySelector("#log").textContent));
   await page.locator("#log").focus();
   await page.keyboard.press("g");
   await says(page, "at the bench: g");
@@ -113,7 +120,7 @@ try {
 
   // A recording.
   await page.setInputFiles("#file", recording);
-  await page.until("the player", () => !document.querySelector("#player-bar").hidden && parseFloat(document.querySelector("#time").textContent) > 0.3);
+  await page.until("the player", () => parseFloat(document.querySelector("#played").textContent) > 1.5);
   await page.shot("recording");
   await page.context().close();
 
