@@ -16,7 +16,7 @@ use anyhow::anyhow;
 use serde_json::{Value, json};
 use tenax_frames::link::Target;
 use tenax_hal_shim::wire::Down;
-use tiny_http::{Header, Method, Request, Response, Server};
+use tiny_http::{Method, Request, Server};
 
 use self::pages::Pages;
 use crate::view::command;
@@ -117,12 +117,16 @@ impl Web {
             }
             _ => text(404, "there is no such page"),
         };
-        let headers = [("Content-Type", kind), ("X-Content-Type-Options", "nosniff")];
-        let mut response = Response::from_data(body).with_status_code(status);
-        for header in headers.iter().filter_map(|(name, value)| Header::from_bytes(*name, *value).ok()) {
-            response.add_header(header);
-        }
-        request.respond(response)
+        // Closed after each answer: the server has a thread a connection, and one that is kept open holds up another.
+        let mut page = request.into_writer();
+        write!(
+            page,
+            "HTTP/1.1 {status} -\r\nContent-Type: {kind}\r\nContent-Length: {}\r\nX-Content-Type-Options: nosniff\r\n\
+             Cache-Control: no-store\r\nConnection: close\r\n\r\n",
+            body.len()
+        )?;
+        page.write_all(&body)?;
+        page.flush()
     }
 
     /// Carries out a request of the page, if that is allowed: status and text of the answer.

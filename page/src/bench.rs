@@ -265,9 +265,9 @@ impl Bench {
         Ok(())
     }
 
-    /// Goes on by this time, at most to the scene's end.
-    pub fn advance(&mut self, time_s: f64) {
-        for _ in 0..frames_in(time_s).min(self.until - self.frames) {
+    /// Goes on by so many frames, at most to the scene's end.
+    pub fn advance(&mut self, frames: u32) {
+        for _ in 0..frames.min(self.until - self.frames) {
             let goes_on = self.hand.frame(&mut self.tape);
             if let Some(beside) = &mut self.beside {
                 beside.frame(&mut ());

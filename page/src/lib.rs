@@ -152,7 +152,7 @@ impl Page {
         let mut answer = json!({});
         match &mut self.source {
             Some(Source::Bench(bench)) => {
-                bench.advance(request["time_s"].as_f64().unwrap_or(0.0));
+                bench.advance(request["frames"].as_u64().unwrap_or(0) as u32);
                 answer["scene"] = bench.told();
             }
             Some(Source::Board(board)) => {

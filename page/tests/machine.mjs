@@ -32,7 +32,7 @@ console.log(`${lines.length} scenes decide as on the host`);
 // The speed of a whole scene, with everything that the page is told.
 let begun = performance.now();
 let told = ask({ do: "bench", scene: "glass", seed: 1, settings: {}, beside: "" });
-while (!told.scene.over) { told = ask({ do: "go on", time_s: 0.1 }); virtual_s = told.scene.now_s; }
+while (!told.scene.over) { told = ask({ do: "go on", frames: 200 }); virtual_s = told.scene.now_s; }
 const speed = virtual_s * 1e3 / (performance.now() - begun);
 console.log(`glass: ${speed.toFixed(0)} times real time`);
 assert.ok(speed >= 10);
@@ -41,7 +41,7 @@ assert.equal(told.scene.hand.dropped, false);
 // A person at the bench, and a control on the same seed.
 told = ask({ do: "bench", scene: "bench", seed: 3, settings: { "s1-mv": 90 }, beside: "off" });
 const events = [];
-const go_on = seconds => { for (let n = 0; n < seconds * 10; n++) { told = ask({ do: "go on", time_s: 0.1 }); for (const change of told.changes) events.push(...change.log || []); } };
+const go_on = seconds => { for (let n = 0; n < seconds * 10; n++) { told = ask({ do: "go on", frames: 200 }); for (const change of told.changes) events.push(...change.log || []); } };
 const act = path => assert.equal(ask({ do: "post", path }).status, 202, path);
 const value = name => ask({ do: "settings" }).settings.find(own => own.name === name).value;
 go_on(1);

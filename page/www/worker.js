@@ -1,8 +1,8 @@
 // The machine of scene and logic, away from the page's thread. Requests come as [number, request] and are answered by number; while a source
 // runs, its changes are posted as they come.
-let machine = null, source = "", playing = false, pace = 1, last = 0, left = 0, clock = 0;
+let module = null, machine = null, source = "", playing = false, pace = 1, last = 0, left = 0, clock = 0;
 const encoder = new TextEncoder(), decoder = new TextDecoder();
-const STEP_S = 0.1, WORK_MS = 12, EVERY_MS = 16, BEHIND_S = 0.25;
+const FRAME_HZ = 2000, SLOW = 25, STEP = 200, WORK_MS = 12, EVERY_MS = 16, BEHIND_S = 0.25;
 
 function bytes(data) {
   const at = machine.reserve(data.length);
@@ -21,21 +21,29 @@ function load(data, kind) {
 // As much of the scene as has become due; at most what fits between two pictures.
 function bench(now) {
   if (!playing) return;
-  left = pace ? Math.min(left + (now - last) / 1e3 * pace, BEHIND_S * pace) : Infinity;
+  left = pace ? Math.min(left + (now - last) / 1e3 * FRAME_HZ * pace, BEHIND_S * FRAME_HZ * pace) : Infinity;
   const until = performance.now() + WORK_MS;
-  while (left >= 0.0125 && performance.now() < until) {
-    const step = Math.min(STEP_S, pace ? Math.floor(left / 0.0125) * 0.0125 : STEP_S);
-    left -= step;
-    const told = ask({ do: "go on", time_s: step });
+  while (left >= SLOW && performance.now() < until) {
+    const frames = Math.min(STEP, Math.floor(left / SLOW) * SLOW);
+    left -= frames;
+    const told = ask({ do: "go on", frames });
     playing = !told.scene.over;
     postMessage(told);
     if (!playing) return;
   }
 }
-function tick() {
+// A machine that has stopped in the middle of something is replaced.
+async function anew(error) {
+  [source, playing] = ["", false];
+  machine = (await WebAssembly.instantiate(module, {})).exports;
+  return { error: `${error.message}: start again` };
+}
+async function tick() {
   const now = performance.now();
-  if (source === "bench") bench(now);
-  else if (source) postMessage(ask({ do: "go on", now_s: now / 1e3 }));
+  try {
+    if (source === "bench") bench(now);
+    else if (source) postMessage(ask({ do: "go on", now_s: now / 1e3 }));
+  } catch (error) { postMessage(await anew(error)); }
   last = now;
 }
 
@@ -63,8 +71,8 @@ const requests = {
 onmessage = async ({ data: [number, request] }) => {
   if (request.do === "start") {
     try {
-      const { instance } = await WebAssembly.instantiateStreaming(fetch(new URL("tenax.wasm", import.meta.url)), {});
-      machine = instance.exports;
+      const started = await WebAssembly.instantiateStreaming(fetch(new URL("tenax.wasm", import.meta.url)), {});
+      [module, machine] = [started.module, started.instance.exports];
       clearInterval(clock);
       clock = setInterval(tick, EVERY_MS);
       postMessage([number, {}]);
@@ -72,5 +80,5 @@ onmessage = async ({ data: [number, request] }) => {
     return;
   }
   const own = requests[request.do];
-  postMessage([number, own ? own(request) : ask(request)]);
+  try { postMessage([number, own ? own(request) : ask(request)]); } catch (error) { postMessage([number, await anew(error)]); }
 };
