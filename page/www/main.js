@@ -81,7 +81,7 @@ function merge(change) {
 }
 
 const can = () => settings.control && kind !== "file";
-const post = async path => { const answer = await source.post(path); at("refused").textContent = answer.status < 300 ? "" : answer.text; dirty = true; };
+const post = async path => { if (!source) return; const answer = await source.post(path); at("refused").textContent = answer.status < 300 ? "" : answer.text; dirty = true; };
 
 // Pictures: as often as the screen is drawn anew, words ten times a second; all twice a second where the system asks for no motion.
 let drawn = 0, read = 0, unread = false, pictures = 0;
@@ -121,9 +121,11 @@ async function changed(name, begin) {
   try {
     if (kind === "bench" && playing) await play(false);
     source?.close();
+    for (const id of ["keep", "zero", "calibrate", "test-start"]) at(id).disabled = true;
     forget();
     show(name);
     await begin();
+    for (const id of ["zero", "calibrate", "test-start"]) at(id).disabled = !source;
     await settings.of(source);
   } catch (error) {
     if (error.name !== "NotFoundError") at("refused").textContent = error.message;

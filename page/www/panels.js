@@ -51,7 +51,7 @@ export function score(scene, name_beside) {
   table.replaceChildren(table.caption);
   row(table, [[""], ["with the reflex"], ...(scene.beside ? [[name_beside]] : [])], "th");
   const rows = [
-    ["the object is", fate], ["it slid", own => n(own.slipped_mm, "mm")], ["slips", own => String(own.slips)],
+    ...(scene.first.width_mm ? [["the object is", fate]] : []), ["it slid", own => n(own.slipped_mm, "mm")], ["slips", own => String(own.slips)],
     ["highest force", own => n(own.peak_n, "N")], ["force beyond need, mean", own => n(own.beyond_n, "N")],
   ];
   for (const [name, of] of rows) row(table, [[name], ...hands.map(own => [of(own), of === fate && ["lost", "broken", "dented"].includes(of(own)) ? "bad" : ""])]);
@@ -134,7 +134,8 @@ export class Settings {
   async set(name, value, undoable = true) {
     const before = this.values[name];
     value = Math.round(value);
-    const answer = await this.#source.post(`/set/${name}/${value}`);
+    const answer = await this.#source?.post(`/set/${name}/${value}`);
+    if (!answer) return;
     text("refused", answer.status < 300 ? "" : answer.text);
     if (undoable && before !== undefined && before !== null) this.#undone.push([name, before]);
     at("undo").disabled = !this.#undone.length;

@@ -139,9 +139,10 @@ function one(plot, last, newest, [points, truths, beside], begin, end) {
     c.beginPath(); c.moveTo(LEFT, y(plot.shown)); c.lineTo(width, y(plot.shown)); c.stroke();
   }
   c.restore();
-  if (plot.field && document.activeElement !== plot.field && plot.shown !== undefined && plot.shown !== null) plot.field.value = Number(plot.shown.toFixed(digits(plot.step)));
-  if (plot.field) plot.field.disabled = !control_of(plot);
+  if (plot.field) {
+    plot.field.disabled = !plot.control;
+    if (document.activeElement !== plot.field) plot.field.value = plot.shown ? Number(plot.shown.toFixed(digits(plot.step))) : "";
+  }
   const now = plot.own && newest ? plot.own(newest) : truths.length ? plot.truth?.(truths[truths.length - 1]) : null;
   plot.now.textContent = now === null || now === undefined ? "-" : now.toFixed(top < 3 ? 3 : 1);
 }
-const control_of = plot => plot.control;
