@@ -8,20 +8,26 @@ use tenax_frames::words::answer_words;
 use tenax_hal_shim::wire::{Answer, Down, Refusal, Up};
 use tenax_line::view::View;
 
-const ANSWER_WITHIN_S: f64 = 1.0;
+const ANSWER_WITHIN_S: f64 = 4.0;
 /// Times that a command is sent which does no more twice than once: a board that is slow skips some.
-const TRIES: u32 = 3;
+const TRIES: usize = 2;
 /// Readings stream for twice as long as until they are asked for again.
 const STREAM_EVERY_S: f64 = 5.0;
 const SESSIONS_MAX: u32 = 4;
+
+/// A command whose answer is waited for: the numbers under which it was sent, and when it was last, s.
+struct Asked {
+    numbers: Vec<u16>,
+    at_s: f64,
+    command: Down,
+}
 
 #[derive(Default)]
 pub struct Talker {
     pub view: View,
     inbox: Inbox,
     encoder: Encoder,
-    /// Number and time of the command whose answer is waited for, and how often it was sent.
-    asked: Option<(u16, f64, Down, u32)>,
+    asked: Option<Asked>,
     waiting: VecDeque<Down>,
     sessions: u32,
     streamed_s: Option<f64>,
@@ -40,17 +46,17 @@ impl Talker {
             self.view.frame(frame.as_ref().map_err(|bad| *bad), self.inbox.counts());
             if let Ok(heard) = &frame
                 && let Up::Answer { of, answer, .. } = &heard.received.message
-                && let Some((_, _, command, _)) = self.asked.take_if(|(number, ..)| *number == *of)
+                && let Some(asked) = self.asked.take_if(|asked| asked.numbers.contains(of))
             {
-                self.answered(command, answer, now_s);
+                self.answered(asked.command, answer, now_s);
             }
         }
-        if let Some((_, _, command, tries)) =
-            self.asked.take_if(|(_, at_s, ..)| now_s - *at_s > ANSWER_WITHIN_S)
+        if let Some(Asked { numbers, command, .. }) =
+            self.asked.take_if(|asked| now_s - asked.at_s > ANSWER_WITHIN_S)
         {
             let repeats = command.reads() || matches!(command, Down::Set(_) | Down::Hello);
-            if repeats && tries < TRIES {
-                self.put(command, now_s, tries + 1);
+            if repeats && numbers.len() < TRIES {
+                self.put(command, now_s, numbers);
             } else {
                 self.view.say(&format!("> {command:?}: no answer"));
             }
@@ -63,7 +69,7 @@ impl Talker {
         if self.asked.is_none()
             && let Some(command) = self.waiting.pop_front()
         {
-            self.put(command, now_s, 1);
+            self.put(command, now_s, Vec::new());
         }
         std::mem::take(&mut self.out)
     }
@@ -73,9 +79,9 @@ impl Talker {
             Answer::Refused(Refusal::NoSession | Refusal::Replayed) if self.sessions < SESSIONS_MAX => {
                 self.sessions += 1;
                 self.waiting.push_front(command);
-                self.put(Down::Hello, now_s, 1);
+                self.put(Down::Hello, now_s, Vec::new());
             }
-            Answer::Nonce(nonce) => self.put(Down::Open { nonce: *nonce }, now_s, 1),
+            Answer::Nonce(nonce) => self.put(Down::Open { nonce: *nonce }, now_s, Vec::new()),
             _ if matches!(command, Down::Open { .. } | Down::About | Down::Last(_)) => {}
             _ => {
                 self.sessions = 0;
@@ -84,9 +90,9 @@ impl Talker {
         }
     }
 
-    fn put(&mut self, command: Down, now_s: f64, tries: u32) {
-        let number = self.send(&command);
-        self.asked = Some((number, now_s, command, tries));
+    fn put(&mut self, command: Down, at_s: f64, mut numbers: Vec<u16>) {
+        numbers.push(self.send(&command));
+        self.asked = Some(Asked { numbers, at_s, command });
     }
 
     fn send(&mut self, command: &Down) -> u16 {
