@@ -1,7 +1,6 @@
 //! Calibrations that tell a person step by step what to do at the hand. The board's readings say when a step is done.
 
 pub mod force;
-pub mod selftest;
 
 use std::time::{Duration, Instant};
 

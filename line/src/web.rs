@@ -1,8 +1,8 @@
 //! The page of `tenax monitor`, in a browser of this machine. Changes come as server-sent events, at most twenty a second. Only this
 //! machine is served, and only pages of this address may ask: a page of another site in the same browser may not.
 
+pub mod pages;
 pub mod source;
-pub mod view;
 
 use std::io::{self, Write};
 use std::iter;
@@ -10,25 +10,36 @@ use std::net::Ipv4Addr;
 use std::sync::mpsc::{Sender, channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, SystemTime};
 
 use anyhow::anyhow;
 use serde_json::{Value, json};
 use tenax_frames::link::Target;
-use tenax_hal_shim::wire::{Down, Setting};
-use tenax_logic::setting::SettingId;
-use tiny_http::{Header, Method, Request, Response, Server};
+use tenax_hal_shim::wire::Down;
+use tiny_http::{Method, Request, Server};
 
-use self::view::View;
+use self::pages::Pages;
+use crate::view::command;
 
-const PAGE: &str = include_str!("web/page.html");
+/// Path, kind and content of each file of the page.
+const FILES: [(&str, &str, &str); 9] = [
+    ("/index.html", "text/html; charset=utf-8", include_str!("../../page/www/index.html")),
+    ("/style.css", "text/css", include_str!("../../page/www/style.css")),
+    ("/main.js", "text/javascript", include_str!("../../page/www/main.js")),
+    ("/sources.js", "text/javascript", include_str!("../../page/www/sources.js")),
+    ("/worker.js", "text/javascript", include_str!("../../page/www/worker.js")),
+    ("/plots.js", "text/javascript", include_str!("../../page/www/plots.js")),
+    ("/stage.js", "text/javascript", include_str!("../../page/www/stage.js")),
+    ("/panels.js", "text/javascript", include_str!("../../page/www/panels.js")),
+    ("/icon.svg", "image/svg+xml", include_str!("../../page/www/icon.svg")),
+];
 const EVENT_EVERY: Duration = Duration::from_millis(50);
 /// Longest line for the bench or the player, bytes.
 const ACT_MAX: usize = 40;
 
 pub struct Web {
     server: Server,
-    view: Arc<Mutex<View>>,
+    pages: Arc<Mutex<Pages>>,
     commands: Sender<Down>,
     /// Lines for the scene's bench or the player: never a command of the board's line.
     bench: Sender<String>,
@@ -36,8 +47,8 @@ pub struct Web {
     port: u16,
 }
 
-fn lock(view: &Mutex<View>) -> MutexGuard<'_, View> {
-    view.lock().unwrap_or_else(PoisonError::into_inner)
+fn lock(pages: &Mutex<Pages>) -> MutexGuard<'_, Pages> {
+    pages.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 impl Web {
@@ -49,12 +60,13 @@ impl Web {
         let port = server.server_addr().to_ip().map_or(port, |address| address.port());
         let (commands, waiting) = channel();
         let (sender, news) = channel();
-        let view = Arc::<Mutex<View>>::default();
-        lock(&view).tell(json!({ "place": line.to_string(), "missed": 0, "bad_frames": 0 }));
+        let pages = Arc::<Mutex<Pages>>::default();
+        let place = json!({ "place": line.to_string(), "missed": 0, "bad_frames": 0 });
+        lock(&pages).with(|view| view.tell(place));
         let bench = source::start(line, truth, waiting, sender);
-        let own = Arc::clone(&view);
+        let own = Arc::clone(&pages);
         thread::spawn(move || news.into_iter().for_each(|news| lock(&own).take(news)));
-        Ok(Self { server, view, commands, bench, control, port })
+        Ok(Self { server, pages, commands, bench, control, port })
     }
 
     pub fn place(&self) -> String {
@@ -70,8 +82,8 @@ impl Web {
         });
     }
 
-    fn view(&self) -> MutexGuard<'_, View> {
-        lock(&self.view)
+    fn pages(&self) -> MutexGuard<'_, Pages> {
+        lock(&self.pages)
     }
 
     fn is_ours(&self, request: &Request) -> bool {
@@ -86,38 +98,42 @@ impl Web {
 
     fn answer(&self, request: Request) -> io::Result<()> {
         let path = request.url().to_owned();
+        let text = |status, text: &str| (status, "text/plain", text.to_owned().into_bytes());
         let (status, kind, body) = match (request.method(), path.as_str()) {
-            _ if !self.is_ours(&request) => {
-                (403, "text/plain", "only pages of this address may ask".to_owned())
-            }
-            (Method::Get, "/") => (200, "text/html; charset=utf-8", PAGE.to_owned()),
-            (Method::Get, "/settings") => {
-                (200, "application/json", self.view().settings(self.control).to_string())
-            }
-            (Method::Get, "/settings.toml") => match self.view().backup() {
-                Some(text) => (200, "application/toml", text),
-                None => (404, "text/plain", "the board has not said who it is".to_owned()),
-            },
+            _ if !self.is_ours(&request) => text(403, "only pages of this address may ask"),
             (Method::Get, "/events") => return self.events(request.into_writer()),
-            (Method::Post, path) => {
-                let (status, text) = self.post(path);
-                (status, "text/plain", text)
+            (Method::Get, "/settings") => {
+                let settings = self.pages().view.settings(self.control).to_string();
+                (200, "application/json", settings.into_bytes())
             }
-            _ => (404, "text/plain", "there is no such page".to_owned()),
+            (Method::Get, "/settings.toml") => match self.pages().view.backup(SystemTime::now()) {
+                Some(text) => (200, "application/toml", text.into_bytes()),
+                None => text(404, "the board has not said who it is"),
+            },
+            (Method::Get, path) => file(path).unwrap_or_else(|| text(404, "there is no such page")),
+            (Method::Post, path) => {
+                let (status, said) = self.post(path);
+                text(status, &said)
+            }
+            _ => text(404, "there is no such page"),
         };
-        let headers = [("Content-Type", kind), ("X-Content-Type-Options", "nosniff")];
-        let mut response = Response::from_string(body).with_status_code(status);
-        for header in headers.iter().filter_map(|(name, value)| Header::from_bytes(*name, *value).ok()) {
-            response.add_header(header);
-        }
-        request.respond(response)
+        // Closed after each answer: the server has a thread a connection, and one that is kept open holds up another.
+        let mut page = request.into_writer();
+        write!(
+            page,
+            "HTTP/1.1 {status} -\r\nContent-Type: {kind}\r\nContent-Length: {}\r\nX-Content-Type-Options: nosniff\r\n\
+             Cache-Control: no-store\r\nConnection: close\r\n\r\n",
+            body.len()
+        )?;
+        page.write_all(&body)?;
+        page.flush()
     }
 
     /// Carries out a request of the page, if that is allowed: status and text of the answer.
     fn post(&self, path: &str) -> (u16, String) {
         if let Some(words) = path.strip_prefix("/selftest/") {
             let words: Vec<String> = words.split('/').map(str::to_owned).collect();
-            return match self.view().selftest(&words) {
+            return match self.pages().with(|view| view.selftest(&words)) {
                 Ok(()) => (202, "done".to_owned()),
                 Err(why) => (409, format!("{why:#}")),
             };
@@ -130,11 +146,11 @@ impl Web {
             (_, None, None) => (404, "no such command"),
             _ if !self.control => (403, "read only: start with --control to change anything"),
             (_, Some(act), _) => {
-                let mut view = self.view();
-                if !view.state().get("bench").is_some_and(Value::is_array) {
+                let mut pages = self.pages();
+                if !pages.view.state().get("bench").is_some_and(Value::is_array) {
                     (404, "no bench: only a served scene has one, where --truth says")
                 } else {
-                    view.say(&format!("at the bench: {act}"));
+                    pages.with(|view| view.say(&format!("at the bench: {act}")));
                     sent(self.bench.send(act).is_ok())
                 }
             }
@@ -149,7 +165,7 @@ impl Web {
             page,
             "HTTP/1.1 200 OK\r\nContent-Type: text/event-stream\r\nCache-Control: no-store\r\nConnection: close\r\n\r\n"
         )?;
-        let changes = self.view().join();
+        let changes = self.pages().join();
         for first in &changes {
             let batch: Vec<Value> = iter::once(first).chain(changes.try_iter()).collect();
             write!(page, "data: {}\n\n", Value::Array(batch))?;
@@ -158,6 +174,14 @@ impl Web {
         }
         Ok(())
     }
+}
+
+/// Status, kind and content of a file of the page. What needs its machine, bench and Web Serial, is not served.
+fn file(path: &str) -> Option<(u16, &'static str, Vec<u8>)> {
+    let path = if path == "/" { "/index.html" } else { path };
+    let (_, kind, text) = FILES.iter().find(|(name, ..)| *name == path)?;
+    // The page then watches this server.
+    Some((200, *kind, text.replace("<html ", "<html data-monitor ").into_bytes()))
 }
 
 const fn sent(is_sent: bool) -> (u16, &'static str) {
@@ -171,33 +195,15 @@ fn words(path: &str, stem: &str) -> Option<String> {
     Some(act.replace('/', " "))
 }
 
-fn command(path: &str) -> Option<Down> {
-    match path {
-        "/zero" => Some(Down::Zero),
-        "/calibrate" => Some(Down::CalibrateEmg),
-        _ => {
-            let (name, value) = path.strip_prefix("/set/")?.split_once('/')?;
-            let id = SettingId::by_name(name)?;
-            Some(Down::Set(Setting { id: id.number(), value: value.parse().ok()? }))
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn a_path_is_a_command_or_none() {
-        let set = Down::Set(Setting { id: SettingId::S1.number(), value: 120 });
-        assert_eq!(command("/set/s1-mv/120"), Some(set));
-        assert_eq!(command("/zero"), Some(Down::Zero));
+    fn a_path_is_words_or_none() {
         let act = |path| words(path, "/bench/");
         assert_eq!(act("/bench/tap/pvdf_3").as_deref(), Some("tap pvdf_3"));
-        assert_eq!((act("/bench/g%0ao"), act("/zero"), command("/bench/g")), (None, None, None));
+        assert_eq!((act("/bench/g%0ao"), act("/zero")), (None, None));
         assert_eq!(words("/play/+5", "/play/").as_deref(), Some("+5"));
-        for wrong in ["/", "/set/s1-mv", "/set/s1/120", "/set/s1-mv/x", "/drive"] {
-            assert_eq!(command(wrong), None, "{wrong}");
-        }
     }
 }

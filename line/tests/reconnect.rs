@@ -14,8 +14,9 @@ use tenax_frames::link::{Board, Client};
 use tenax_hal_shim::wire::{
     About, Answer, Counters, Down, FRAME_MAX, Identity, Receiver as Frames, Up, VERSION, encode,
 };
+use tenax_line::view::View;
+use tenax_line::web::pages::Pages;
 use tenax_line::web::source::{News, start};
-use tenax_line::web::view::View;
 
 const WITHIN: Duration = Duration::from_secs(20);
 
@@ -35,7 +36,7 @@ fn foreign() -> Vec<u8> {
 }
 
 struct Watch {
-    view: View,
+    pages: Pages,
     news: Receiver<News>,
     _commands: Sender<Down>,
 }
@@ -44,14 +45,14 @@ impl Watch {
     fn of(place: &str) -> Self {
         let ((commands, waiting), (sender, news)) = (channel(), channel());
         start(&place.parse().unwrap(), None, waiting, sender);
-        Self { view: View::default(), news, _commands: commands }
+        Self { pages: Pages::default(), news, _commands: commands }
     }
 
     fn until(&mut self, what: &str, mut is_so: impl FnMut(&View) -> bool) {
         let began = Instant::now();
         loop {
-            self.news.try_iter().for_each(|news| self.view.take(news));
-            if is_so(&self.view) {
+            self.news.try_iter().for_each(|news| self.pages.take(news));
+            if is_so(&self.pages.view) {
                 return;
             }
             assert!(began.elapsed() < WITHIN, "never {what}");
@@ -87,12 +88,12 @@ fn a_board_that_is_unplugged_and_plugged_in_again_or_speaks_another_version_is_w
     let mut watch = Watch::of(at.to_str().unwrap());
     say(&mut board, &mut watch);
     // Garbage is counted, and what comes after it is heard.
-    let before = watch.view.counts;
+    let before = watch.pages.view.counts;
     board.write_all(&[&[0x55; 2_000][..], &[0]].concat()).unwrap();
     board.write_all(&foreign()).unwrap();
     let said = format!("of version {}, and this tool speaks {VERSION}", VERSION + 1);
     watch.until(&said, |view| text(view, "other_version").is_some_and(|own| own.starts_with(&said)));
-    assert_eq!(watch.view.counts.bad_frames, before.bad_frames + 2);
+    assert_eq!(watch.pages.view.counts.bad_frames, before.bad_frames + 2);
     // It was flashed anew.
     say(&mut board, &mut watch);
     watch.until("this version again", |view| text(view, "other_version").is_none());

@@ -7,7 +7,7 @@ use tenax_frames::link::{Encoder, Inbox};
 use tenax_hal_shim::channel::{CHANNELS, COUNT, MOTOR_CURRENT, Role, by_name};
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::{Down, Up};
-use tenax_line::guide::selftest::{Selftest, Verdict};
+use tenax_line::selftest::{Selftest, Verdict};
 use tenax_scene::plant::{Pins, Plant};
 use tenax_scene::{Act, SceneFile, World};
 use tenax_sim::board::Recorder;

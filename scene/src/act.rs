@@ -15,17 +15,26 @@ pub enum Act {
     PutDown,
     Pull,
     Wet,
+    /// 100 g more.
+    Load,
+    /// The next film loses its wire.
+    CutFilm,
+    /// The flexor's electrode leaves the skin for 3 s.
+    LiftElectrode,
     Close,
     Open,
     Weight(f64),
     Touch(usize),
 }
 
-pub const KEYS: [(&str, &str, Act); 6] = [
+pub const KEYS: [(&str, &str, Act); 9] = [
     ("g", "grip and lift", Act::Grip),
     ("d", "put down", Act::PutDown),
     ("p", "pull", Act::Pull),
     ("w", "wet or dry", Act::Wet),
+    ("h", "make it heavier", Act::Load),
+    ("f", "cut a film", Act::CutFilm),
+    ("e", "lift an electrode", Act::LiftElectrode),
     ("c", "contract to close", Act::Close),
     ("o", "contract to open", Act::Open),
 ];

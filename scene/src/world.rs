@@ -36,6 +36,8 @@ use crate::sensor::skin::SkinCamera;
 use crate::sensor::strain::Gauges;
 use crate::truth::{self, Row, State, TRACE_HZ, Truth};
 
+/// What a person adds to the object at once at the bench (assumed).
+const LOAD_KG: f64 = 0.1;
 const TRACE_EVERY: u64 = (SCAN_HZ / TRACE_HZ) as u64;
 
 #[derive(Debug)]
@@ -68,6 +70,22 @@ pub struct World {
     causal: Option<Causal>,
     pins: Pins,
     truth: Truth,
+}
+
+/// Where everything stands, for a drawing.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Pose {
+    /// Distance between the fingers.
+    pub opening_mm: f64,
+    /// Heights over where the hand grasps.
+    pub hand_mm: f64,
+    pub object_mm: f64,
+    pub pitch_rad: f64,
+    /// As it is now, dents included; 0: a probe strokes a surface.
+    pub width_mm: f64,
+    pub mass_kg: f64,
+    /// Friction coefficient of the surface as it is now. None: a probe strokes it.
+    pub mu_s: Option<f64>,
 }
 
 #[derive(Clone, Debug)]
@@ -165,6 +183,22 @@ impl World {
         matches!(self.task, Task::Stroke(_))
     }
 
+    pub fn pose(&self) -> Pose {
+        let opening_mm = self.gripper.opening_mm;
+        match &self.task {
+            Task::Grasp { grasp, hand, .. } => Pose {
+                opening_mm,
+                hand_mm: hand.height_m * 1e3,
+                object_mm: grasp.height_m(hand) * 1e3,
+                pitch_rad: grasp.pitch_rad(),
+                width_mm: grasp.body.width_mm(),
+                mass_kg: grasp.mass_kg,
+                mu_s: Some(grasp.mu_s(self.now_s())),
+            },
+            Task::Stroke(stroke) => Pose { opening_mm, object_mm: stroke.probe_m * 1e3, ..Pose::default() },
+        }
+    }
+
     pub fn now_s(&self) -> f64 {
         self.scans as f64 * STEP_S
     }
@@ -195,6 +229,7 @@ impl World {
                 self.wearer.contract(at_s + 2.0, 1.0, Intent::Open, f64::INFINITY);
             }
             Act::Pull => grasp.pull(at_s, 1.5),
+            Act::Load => grasp.load(LOAD_KG),
             _ => grasp.wet(at_s),
         }
     }
@@ -312,7 +347,9 @@ impl Plant for World {
             Act::Weight(newtons) => self.touches.weigh(at_s, newtons),
             Act::Close => self.wearer.contract(at_s, 5.0, Intent::Close, f64::INFINITY),
             Act::Open => self.wearer.contract(at_s, 5.0, Intent::Open, f64::INFINITY),
-            Act::Grip | Act::PutDown | Act::Pull | Act::Wet => self.handle(at_s, act),
+            Act::CutFilm => self.faults.cut_film(at_s),
+            Act::LiftElectrode => self.envelopes.lift(0, at_s),
+            Act::Grip | Act::PutDown | Act::Pull | Act::Wet | Act::Load => self.handle(at_s, act),
         }
     }
 

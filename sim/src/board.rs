@@ -1,9 +1,11 @@
 //! The boards that a plant can be connected to, and the record of a run. A [`Recorder`] hears of what comes 80 times a second or more,
 //! the [`Summary`] has what is rare, and a [`Run`] is the recorder that keeps everything.
 
+#[cfg(feature = "host")]
 pub mod agreement;
 #[cfg(feature = "emulator")]
 pub mod emulated;
+pub mod hash;
 pub mod kept;
 pub mod recorder;
 pub mod simulated;

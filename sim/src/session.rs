@@ -8,6 +8,7 @@ use std::path::Path;
 #[cfg(feature = "emulator")]
 use std::path::PathBuf;
 use std::sync::atomic::Ordering::Relaxed;
+use std::time::Instant;
 
 use anyhow::{Context, bail, ensure};
 use tenax_frames::link::{Captured, Clock};
@@ -89,7 +90,12 @@ impl Board {
         progress: &mut dyn FnMut(f64),
     ) -> anyhow::Result<(Summary, P)> {
         match self {
-            Self::Host => Ok(simulated::record(plant, recorder, progress)),
+            Self::Host => {
+                let began = Instant::now();
+                let (mut summary, plant) = simulated::record(plant, recorder, progress);
+                summary.wall_s = began.elapsed().as_secs_f64();
+                Ok((summary, plant))
+            }
             #[cfg(feature = "emulator")]
             Self::Emulated { image, options } => emulated::record(image, plant, options, recorder, progress),
         }

@@ -6,13 +6,14 @@ use std::path::Path;
 
 use rayon::prelude::*;
 use tenax_scene::{SceneFile, World, builtin};
+use tenax_sim::board::hash::{Hash, of_run, of_scene};
 use tenax_sim::board::{Run, simulated};
 use tenax_sim::live::Use;
 use tenax_sim::recipe::Kind;
 use tenax_sim::replay::Recipe;
 use tenax_sim::session::{self, Board};
 
-use crate::common::hash::{Hash, compare, of_run};
+use crate::common::hash::compare;
 use crate::common::shared;
 
 const SEEDS: [u64; 2] = [1, 2];
@@ -20,13 +21,7 @@ const SEEDS: [u64; 2] = [1, 2];
 fn scene(name: &str, text: &str, seed: u64) -> Hash {
     let file = SceneFile::parse(text, name).expect("a shipped scene is good");
     let (run, mut world) = simulated::run(World::new(&file, seed), &mut |_| {});
-    let mut hash = of_run(&run);
-    for row in world.take_trace() {
-        // Rounded, so that another libm does not tell.
-        hash.bytes(&((row.grip_n * 1e3).round() as i64).to_le_bytes());
-        hash.bytes(&((row.slide_mm_s * 1e3).round() as i64).to_le_bytes());
-    }
-    hash
+    of_scene(&run, &mut world)
 }
 
 fn replayed(path: &Path) -> Hash {

@@ -1,6 +1,8 @@
 //! `cargo tenax COMMAND`: builds the program that has the command, and starts it.
 #![forbid(unsafe_code)]
 
+mod page;
+
 use std::ffi::OsString;
 use std::path::Path;
 use std::process::{Command, ExitCode};
@@ -78,8 +80,10 @@ fn start(command: &str, rest: &[OsString]) -> Result<ExitCode, String> {
         help();
         return Ok(ExitCode::SUCCESS);
     }
-    if command == "test" {
-        return test(rest);
+    match command {
+        "test" => return test(rest),
+        "page" => return page::page(rest),
+        _ => {}
     }
     let has = |program: &&Program| program.commands.iter().any(|(name, _)| *name == command);
     let program = PROGRAMS
@@ -114,10 +118,13 @@ fn test(rest: &[OsString]) -> Result<ExitCode, String> {
 
 /// In the person's folder, so that their paths hold. rigless asks for rustc 1.98 and builds on 1.95.
 fn cargo(verb: &str, manifest: &str) -> Command {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap_or(Path::new("."));
     let mut cargo = Command::new("cargo");
-    cargo.arg(verb).arg("--ignore-rust-version").arg("--manifest-path").arg(root.join(manifest));
+    cargo.arg(verb).arg("--ignore-rust-version").arg("--manifest-path").arg(root().join(manifest));
     cargo
+}
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap_or(Path::new("."))
 }
 
 fn status(command: &mut Command) -> Result<ExitCode, String> {
@@ -128,6 +135,7 @@ fn status(command: &mut Command) -> Result<ExitCode, String> {
 fn help() {
     println!("cargo tenax COMMAND [OPTIONS]; each command has --help\n");
     println!("  {:<12}run every test", "test");
+    println!("  {:<12}the bench and a board in a browser, as a folder (--out FOLDER)", "page");
     for program in &PROGRAMS {
         println!();
         for (name, what) in program.commands {

@@ -7,8 +7,11 @@ pub mod play;
 mod protobuf;
 pub mod quantile;
 pub mod record;
+#[cfg(feature = "host")]
 pub mod serve;
 pub mod settings;
+#[cfg(feature = "host")]
 pub mod tool;
+#[cfg(feature = "host")]
 pub mod truth;
 pub mod words;

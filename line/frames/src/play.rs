@@ -1,6 +1,5 @@
 //! Plays a recording's line for the page of `tenax monitor`, at its pace or another, from any second.
 
-use std::path::Path;
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::{Duration, Instant};
 
@@ -22,8 +21,12 @@ pub struct Reel {
 }
 
 impl Reel {
-    pub fn open(path: &Path) -> anyhow::Result<Self> {
-        let captured = Captured::open(path)?;
+    #[cfg(feature = "host")]
+    pub fn open(path: &std::path::Path) -> anyhow::Result<Self> {
+        Ok(Self::of(Captured::open(path)?))
+    }
+
+    pub fn of(captured: Captured) -> Self {
         let (mut clock, mut frames, mut first_s, mut at_s) = (Clock::default(), Vec::new(), None, 0.0);
         for (end, came_ns, frame) in captured.frames() {
             if let Ok(heard) = frame {
@@ -35,7 +38,7 @@ impl Reel {
             frames.push((at_s, end));
         }
         let line = captured.line;
-        Ok(Self { line, frames })
+        Self { line, frames }
     }
 
     fn length_s(&self) -> f64 {
@@ -85,56 +88,80 @@ pub enum Told {
     At(Playing),
 }
 
-/// Plays until `tell` returns false or the controls end. Controls: `12.5` (that second), `+5` and `-5` (by seconds), `x2` (speed),
-/// `loop` and `pause`; at the end these two begin it again.
-pub fn play(reel: &Reel, controls: &Receiver<String>, tell: &mut dyn FnMut(Told) -> bool) {
-    let mut now = Playing { at_s: 0.0, of_s: reel.length_s(), speed: 1.0, repeat: false, paused: false };
-    let (mut inbox, mut next, mut clock) = (Inbox::default(), 0, (Instant::now(), 0.0));
-    if !tell(Told::At(now)) {
-        return;
+/// A reel that plays by a clock of its user's, s from any instant.
+pub struct Player {
+    reel: Reel,
+    now: Playing,
+    inbox: Inbox,
+    next: usize,
+    /// An instant of the clock, and the recording's time then, s.
+    since: (f64, f64),
+}
+
+impl Player {
+    pub fn new(reel: Reel, clock_s: f64) -> Self {
+        let now = Playing { at_s: 0.0, of_s: reel.length_s(), speed: 1.0, repeat: false, paused: false };
+        Self { reel, now, inbox: Inbox::default(), next: 0, since: (clock_s, 0.0) }
     }
-    loop {
-        let due = reel.frames.get(next).filter(|_| !now.paused).map(|(at_s, _)| {
-            let since = Duration::from_secs_f64((at_s - clock.1).max(0.0) / now.speed);
-            since.saturating_sub(clock.0.elapsed())
-        });
-        let control = match due {
-            Some(due) => controls.recv_timeout(due),
+
+    pub const fn playing(&self) -> Playing {
+        self.now
+    }
+
+    /// Time until the next frame is due, s. None while it is paused, and at its end.
+    pub fn due_s(&self, clock_s: f64) -> Option<f64> {
+        let (at_s, _) = self.reel.frames.get(self.next).filter(|_| !self.now.paused)?;
+        Some(((at_s - self.since.1).max(0.0) / self.now.speed - (clock_s - self.since.0)).max(0.0))
+    }
+
+    /// Plays the next frame. False: `tell` returned false.
+    pub fn step(&mut self, clock_s: f64, tell: &mut dyn FnMut(Told) -> bool) -> bool {
+        let Some(&(at_s, _)) = self.reel.frames.get(self.next) else { return true };
+        let is_told = (at_s / TOLD_EACH_S).floor() > (self.now.at_s / TOLD_EACH_S).floor();
+        self.now.at_s = at_s;
+        let heard = self.reel.message(self.next, &mut self.inbox).map(Box::new);
+        self.next += 1;
+        if heard.is_some_and(|heard| !tell(Told::Message(heard))) || is_told && !tell(Told::At(self.now)) {
+            return false;
+        }
+        !(self.now.repeat && self.next == self.reel.frames.len()) || self.jump(0.0, clock_s, tell)
+    }
+
+    /// Does what a line says: `12.5` (that second), `+5` and `-5` (by seconds), `x2` (speed), `loop` and `pause`; at the end these two begin
+    /// it again. False: `tell` returned false.
+    pub fn control(&mut self, line: &str, clock_s: f64, tell: &mut dyn FnMut(Told) -> bool) -> bool {
+        let is_over = self.next == self.reel.frames.len();
+        let begins = is_over && ["loop", "pause"].contains(&line);
+        let to_s = self.now.control(line).or(begins.then_some(0.0));
+        self.now.paused &= !is_over;
+        self.now.at_s = to_s.unwrap_or(self.now.at_s);
+        self.since = (clock_s, self.now.at_s);
+        tell(Told::At(self.now)) && to_s.is_none_or(|to_s| self.jump(to_s, clock_s, tell))
+    }
+
+    fn jump(&mut self, to_s: f64, clock_s: f64, tell: &mut dyn FnMut(Told) -> bool) -> bool {
+        self.next = self.reel.frames.partition_point(|(at_s, _)| *at_s < to_s);
+        (self.inbox, self.now.at_s, self.since) = (Inbox::default(), to_s, (clock_s, to_s));
+        tell(Told::Again) && tell_beginning(&self.reel, to_s, tell)
+    }
+}
+
+/// Plays until `tell` returns false or the controls end: lines for [`Player::control`].
+pub fn play(reel: Reel, controls: &Receiver<String>, tell: &mut dyn FnMut(Told) -> bool) {
+    let began = Instant::now();
+    let clock_s = || began.elapsed().as_secs_f64();
+    let mut player = Player::new(reel, clock_s());
+    let mut goes_on = tell(Told::At(player.playing()));
+    while goes_on {
+        let control = match player.due_s(clock_s()) {
+            Some(due_s) => controls.recv_timeout(Duration::from_secs_f64(due_s)),
             None => controls.recv().map_err(|_| RecvTimeoutError::Disconnected),
         };
-        let is_over = next == reel.frames.len();
-        let to_s = match control {
+        goes_on = match control {
             Err(RecvTimeoutError::Disconnected) => return,
-            Err(RecvTimeoutError::Timeout) => {
-                let (at_s, _) = reel.frames[next];
-                let is_told = (at_s / TOLD_EACH_S).floor() > (now.at_s / TOLD_EACH_S).floor();
-                now.at_s = at_s;
-                let heard = reel.message(next, &mut inbox).map(Box::new);
-                next += 1;
-                if heard.is_some_and(|heard| !tell(Told::Message(heard))) || is_told && !tell(Told::At(now)) {
-                    return;
-                }
-                (now.repeat && next == reel.frames.len()).then_some(0.0)
-            }
-            Ok(line) => {
-                let begins = is_over && ["loop", "pause"].contains(&line.as_str());
-                let to_s = now.control(&line).or(begins.then_some(0.0));
-                now.paused &= !is_over;
-                now.at_s = to_s.unwrap_or(now.at_s);
-                clock = (Instant::now(), now.at_s);
-                if !tell(Told::At(now)) {
-                    return;
-                }
-                to_s
-            }
+            Err(RecvTimeoutError::Timeout) => player.step(clock_s(), tell),
+            Ok(line) => player.control(&line, clock_s(), tell),
         };
-        if let Some(to_s) = to_s {
-            (next, inbox) = (reel.frames.partition_point(|(at_s, _)| *at_s < to_s), Inbox::default());
-            (now.at_s, clock) = (to_s, (Instant::now(), to_s));
-            if !tell(Told::Again) || !tell_beginning(reel, to_s, tell) {
-                return;
-            }
-        }
     }
 }
 

@@ -3,129 +3,91 @@
 //! beginning and at each start of the board; its publish time is this computer's. The file is whole at every moment but for the last
 //! half second. The metadata `tenax` names tool, chip, build, schema and settings.
 
+#[cfg(feature = "host")]
 pub mod csv;
+#[cfg(feature = "host")]
+mod file;
 pub mod topics;
 
 use std::collections::BTreeMap;
-use std::fs::File;
-use std::io::{BufWriter, ErrorKind, Write};
+use std::io::Write;
 use std::iter;
-use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
+use std::time::{Duration, UNIX_EPOCH};
 
-use anyhow::{Context, bail};
 use mcap::records::{MessageHeader, Metadata};
 use mcap::write::NoSeek;
 use mcap::{McapResult, WriteOptions, Writer};
 use tenax_hal_shim::wire::{About, Answer, FRAME_MAX, Received, Up, encode};
 
+#[cfg(feature = "host")]
+pub use self::file::{Recording, name_now};
 use self::topics::{Row, timed};
-use crate::link::captured::{TOPIC, is_recording};
+use crate::link::captured::TOPIC;
 use crate::link::{Clock, Inbox};
 use crate::protobuf::{self, PACKAGE, Value};
 use crate::settings;
 
-/// The name of a recording that begins now: `tenax-20261123T081500Z.mcap`.
-pub fn name_now() -> PathBuf {
-    let now = humantime::format_rfc3339_seconds(SystemTime::now()).to_string();
-    PathBuf::from(format!("tenax-{}.mcap", now.replace(['-', ':'], "")))
-}
-
-/// Messages reach the file after so much of the recording computer's time, or of the board's.
-const WHOLE_EVERY: Duration = Duration::from_millis(500);
-
-pub struct Recording {
-    path: PathBuf,
-    file: Writer<NoSeek<BufWriter<File>>>,
+/// A recording on its way into `W`.
+pub struct Tape<W: Write> {
+    file: Writer<NoSeek<W>>,
     /// Number of each topic's channel, and of its next message.
     channels: BTreeMap<String, (u16, u32)>,
-    /// When the file was begun, ns since 1970, and by a clock that nobody sets.
     began_ns: u64,
-    began: Instant,
     clock: Clock,
     /// Whether the metadata are written: as soon as the board has said who it is.
     is_named: bool,
-    /// When the oldest message that is not in the file came, and its log time, ns.
-    oldest: Option<(Instant, u64)>,
     inbox: Inbox,
 }
 
-impl Recording {
-    /// A recording in a new file. Fails if the file cannot be written, is there already, or is not called `*.mcap`.
-    pub fn create(path: &Path) -> anyhow::Result<Self> {
-        let name = path.display();
-        if !is_recording(path) {
-            bail!(
-                "{name}: a recording is an MCAP file; call it {}. `tenax play FILE.mcap --csv DIR` makes CSV of it",
-                path.with_extension("mcap").display()
-            );
-        }
-        let file = match File::create_new(path) {
-            Err(error) if error.kind() == ErrorKind::AlreadyExists => {
-                bail!("{name} is there already, and a recording overwrites nothing: choose another name")
-            }
-            other => other.with_context(|| format!("cannot write {name}"))?,
-        };
+impl<W: Write> Tape<W> {
+    /// A recording that begins now, ns since 1970.
+    pub fn new(out: W, now_ns: u64) -> McapResult<Self> {
         let options = WriteOptions::new()
             .library(concat!("tenax ", env!("CARGO_PKG_VERSION")))
-            .compression_threads(0)
             // A chunk is written when it is whole: a file that is cut short is read up to there.
             .disable_seeking(true);
+        #[cfg(feature = "host")]
+        let options = options.compression_threads(0);
         Ok(Self {
-            path: path.to_owned(),
-            file: options.create(NoSeek::new(BufWriter::new(file)))?,
+            file: options.create(NoSeek::new(out))?,
             channels: BTreeMap::new(),
-            began_ns: SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_nanos() as u64),
-            began: Instant::now(),
+            began_ns: now_ns,
             clock: Clock::default(),
             is_named: false,
-            oldest: None,
             inbox: Inbox::default(),
         })
     }
 
-    /// Records a message. Fails if the file cannot be written: it is whole up to there.
-    pub fn take(&mut self, received: &Received<Up>) -> anyhow::Result<()> {
-        self.try_take(received).with_context(|| self.cannot())
-    }
-
-    fn try_take(&mut self, received: &Received<Up>) -> McapResult<()> {
+    /// Records a message that comes now, ns since 1970; its log time. None: the board's time is not known yet.
+    pub fn take(&mut self, received: &Received<Up>, now_ns: u64) -> McapResult<Option<u64>> {
         let message = &received.message;
         if let Up::About(about) | Up::Answer { answer: Answer::About(about), .. } = message
             && !self.is_named
         {
             self.name(Some(about))?;
         }
-        let came_ns = self.began_ns + self.began.elapsed().as_nanos() as u64;
-        let rows = timed(&mut self.clock, message, Some(came_ns));
-        let Some(last) = self.clock.last() else { return Ok(()) };
+        let rows = timed(&mut self.clock, message, Some(now_ns));
+        let Some(last) = self.clock.last() else { return Ok(None) };
         let mut buffer = [0; FRAME_MAX];
         let bytes = encode(received.sequence, message, &mut buffer);
         let fields = vec![("data".into(), Value::Bytes(bytes.unwrap_or_default().to_vec()))];
         let line = Row { topic: TOPIC.into(), message: "Line", frame: last, fields };
-        iter::once(line).chain(rows).try_for_each(|row| self.write(&row, came_ns))?;
-        let (_, from_ns) = *self.oldest.get_or_insert((Instant::now(), self.clock.ns(last)));
-        if self.clock.ns(last).saturating_sub(from_ns) >= WHOLE_EVERY.as_nanos() as u64 {
-            self.flush()?;
+        iter::once(line).chain(rows).try_for_each(|row| self.write(&row, now_ns))?;
+        Ok(Some(self.clock.ns(last)))
+    }
+
+    /// Records the messages in a line's bytes.
+    pub fn line(&mut self, bytes: &[u8], now_ns: u64) -> McapResult<()> {
+        for &byte in bytes {
+            if let Some(Ok(heard)) = self.inbox.push(byte) {
+                self.take(&heard.received, now_ns)?;
+            }
         }
         Ok(())
     }
 
-    /// Writes what has waited for long enough; to be called all the time. Fails as [`take`](Self::take) does.
-    pub fn keep(&mut self) -> anyhow::Result<()> {
-        match self.oldest {
-            Some((came, _)) if came.elapsed() >= WHOLE_EVERY => self.flush().with_context(|| self.cannot()),
-            _ => Ok(()),
-        }
-    }
-
-    fn flush(&mut self) -> McapResult<()> {
-        self.oldest = None;
+    pub fn flush(&mut self) -> McapResult<()> {
         self.file.flush()
-    }
-
-    fn cannot(&self) -> String {
-        format!("cannot write {}, which is whole up to there", self.path.display())
     }
 
     fn write(&mut self, row: &Row, came_ns: u64) -> McapResult<()> {
@@ -144,28 +106,14 @@ impl Recording {
         self.file.write_to_known_channel(&header, &protobuf::message(&row.fields))
     }
 
-    /// Records the messages in a line's bytes. Fails as [`take`](Self::take) does.
-    pub fn line(&mut self, bytes: &[u8]) -> anyhow::Result<()> {
-        for &byte in bytes {
-            if let Some(Ok(heard)) = self.inbox.push(byte) {
-                self.take(&heard.received)?;
-            }
-        }
-        self.keep()
-    }
-
-    /// Ends the file. Fails if it could not be written whole.
-    pub fn finish(self) -> anyhow::Result<()> {
-        let cannot = self.cannot();
-        self.try_finish().context(cannot)
-    }
-
-    fn try_finish(mut self) -> McapResult<()> {
+    pub fn finish(mut self) -> McapResult<W> {
         if !self.is_named {
             self.name(None)?;
         }
         self.file.finish()?;
-        Ok(self.file.into_inner().flush()?)
+        let mut out = self.file.into_inner().into_inner();
+        out.flush()?;
+        Ok(out)
     }
 
     fn name(&mut self, about: Option<&About>) -> McapResult<()> {

@@ -16,8 +16,8 @@ pub fn named(name: &str) -> anyhow::Result<SettingId> {
     })
 }
 
-pub fn backup(about: &About, settings: &[Setting]) -> String {
-    let now = humantime::format_rfc3339_seconds(SystemTime::now());
+pub fn backup(about: &About, settings: &[Setting], now: SystemTime) -> String {
+    let now = humantime::format_rfc3339_seconds(now);
     format!(
         "# Saved {now} by tenax {}, wire version {VERSION}, schema {:016x}.\n# Board: {}.\n{}",
         env!("CARGO_PKG_VERSION"),
@@ -70,7 +70,7 @@ mod tests {
     #[test]
     fn a_backup_names_its_board_and_is_imported_as_it_was() {
         let all = SettingId::ALL.map(|id| Setting { id: id.number(), value: id.row().min });
-        let text = backup(&About { schema: 0x1234, ..About::default() }, &all);
+        let text = backup(&About { schema: 0x1234, ..About::default() }, &all, SystemTime::UNIX_EPOCH);
         for word in ["the host's own build", "schema 0000000000001234"] {
             assert!(text.contains(word), "{text}");
         }

@@ -3,6 +3,7 @@
 use std::hash::{BuildHasher, RandomState};
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::time::SystemTime;
 
 use anyhow::{Context, bail, ensure};
 use clap::Subcommand;
@@ -98,7 +99,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         Command::Get { id } => out::say!("{}", client.setting(*id)?)?,
         Command::Export { file } => {
             let text = match client.ask(&Down::About, ANSWER_WITHIN)? {
-                Answer::About(about) => settings::backup(&about, &all(&mut client)?),
+                Answer::About(about) => settings::backup(&about, &all(&mut client)?, SystemTime::now()),
                 other => bail!("the board answers {other:?}"),
             };
             match file {

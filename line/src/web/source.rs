@@ -54,7 +54,7 @@ pub fn start(
 
 fn watch_recording(path: &Path, controls: &Receiver<String>, news: &Sender<News>) -> anyhow::Result<()> {
     let reel = Reel::open(path)?;
-    play::play(&reel, controls, &mut |told| news.send(News::Played(told)).is_ok());
+    play::play(reel, controls, &mut |told| news.send(News::Played(told)).is_ok());
     Ok(())
 }
 

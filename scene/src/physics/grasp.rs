@@ -97,6 +97,10 @@ impl Grasp {
         }
     }
 
+    pub(crate) const fn load(&mut self, more_kg: f64) {
+        self.empty_kg += more_kg;
+    }
+
     pub(crate) fn pull(&mut self, at_s: f64, force_n: f64) {
         self.pulls.push(at_s, 1.0, -force_n, 0.1);
     }
@@ -140,7 +144,7 @@ impl Grasp {
         self.shear_part = if grip_n > 0.0 { (shear_n.abs() / (holds * grip_n)).min(1.0) } else { 0.0 };
 
         let along_n = free_n.abs() / PADS / holds;
-        self.needed_n = along_n.hypot(turn.needed_n);
+        self.needed_n = libm::hypot(along_n, turn.needed_n);
         self.needs_n = [along_n, turn.needed_n];
         self.shear_n = shear_n;
         self.lifted |= grip_n > TOUCH_N && self.table_n == 0.0;
@@ -205,6 +209,10 @@ impl Grasp {
         self.rest_m + hand.height_m + self.slid_m
     }
 
+    pub(crate) fn mu_s(&self, t_s: f64) -> f64 {
+        self.surface.at(t_s).mu_s
+    }
+
     pub fn table_part(&self) -> f64 {
         self.table_n / (self.mass_kg * GRAVITY_M_S2)
     }
@@ -235,7 +243,7 @@ impl Grasp {
     /// The least grip force of each finger under which all that sticks would stick, the swing of the skin's spring included, N.
     pub fn carries_n(&self) -> f64 {
         let [along_n, turning_n] = self.needs_n;
-        along_n.max(self.shear_n.abs() / self.holds).hypot(turning_n)
+        libm::hypot(along_n.max(self.shear_n.abs() / self.holds), turning_n)
     }
 
     pub fn margin_n(&self, grip_n: f64) -> f64 {

@@ -53,6 +53,23 @@ impl Faults {
         Self(faults.collect())
     }
 
+    /// Cuts the wire of the first film that has one.
+    pub(crate) fn cut_film(&mut self, at_s: f64) {
+        let is_cut = |channel: usize| self.0.iter().any(|own| own.channel == channel && own.is_cut_film());
+        let Some(channel) = (PVDF..PVDF + PVDF_COUNT).find(|&channel| !is_cut(channel)) else { return };
+        let span = Span { begin_s: at_s, end_s: f64::INFINITY };
+        let kind = FaultKind::Cut;
+        self.0.push(Fault {
+            span,
+            channel,
+            kind,
+            with: channel,
+            press_n: 0.0,
+            drift_per_s: 0.0,
+            stuck_v: None,
+        });
+    }
+
     pub(crate) fn pressed_n(&self, t_s: f64) -> [f64; FSR_COUNT] {
         let mut pressed_n = [0.0; FSR_COUNT];
         for fault in self.0.iter().filter(|fault| fault.span.contains(t_s)) {
@@ -93,7 +110,7 @@ impl Faults {
             *pin_v = match fault.kind {
                 FaultKind::Dead => 0.0,
                 FaultKind::Cut if fault.is_cut_film() => *pin_v,
-                FaultKind::Cut => *fault.stuck_v.get_or_insert(*pin_v) * (-since_s / CUT_S).exp(),
+                FaultKind::Cut => *fault.stuck_v.get_or_insert(*pin_v) * libm::exp(-since_s / CUT_S),
                 FaultKind::Open => before_v,
                 FaultKind::Saturated => f64::from(REFERENCE_MV) / 1e3,
                 FaultKind::Stuck => *fault.stuck_v.get_or_insert(*pin_v),

@@ -19,6 +19,9 @@ const RISE_TAUS: f64 = 2.197;
 const WANDER_HZ: f64 = 6.0;
 /// The part of a lifted electrode's mains that is ripple; the rest is level.
 const RIPPLE_PART: f64 = 0.2;
+/// An electrode that a person lifts at the bench (assumed).
+const LIFTED_S: f64 = 3.0;
+const LIFTED_MV: f64 = 400.0;
 
 #[derive(Debug)]
 pub(crate) struct Envelopes {
@@ -52,6 +55,10 @@ impl Envelopes {
             sides: [side; SIDES],
             noise: Noise::new(seed, Source::Myo),
         }
+    }
+
+    pub(crate) fn lift(&mut self, side: usize, at_s: f64) {
+        self.lifts.push((side, Span::new(at_s, LIFTED_S), LIFTED_MV));
     }
 
     pub(crate) fn step(&mut self, t_s: f64, effort: &Effort) -> [f64; SIDES] {

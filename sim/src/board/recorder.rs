@@ -4,8 +4,6 @@ use tenax_hal_shim::frame::Scan;
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::Slow;
 
-use tenax_frames::serve::Server;
-
 use super::Run;
 
 pub trait Recorder {
@@ -51,7 +49,8 @@ impl Recorder for Run {
     }
 }
 
-impl Recorder for Server {
+#[cfg(feature = "host")]
+impl Recorder for tenax_frames::serve::Server {
     fn line(&mut self, bytes: &[u8]) {
         Self::line(self, bytes);
     }

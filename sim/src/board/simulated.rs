@@ -6,8 +6,6 @@ pub(crate) mod downlink;
 mod store;
 mod uplink;
 
-use std::time::Instant;
-
 use tenax_hal_shim::channel::{SCAN_HZ, SCANS_PER_FRAME};
 use tenax_hal_shim::detector::DetectorSet;
 use tenax_hal_shim::frame::{Frame, Scan, scan_of_pins};
@@ -63,7 +61,6 @@ fn closed_loop(
     recorder: &mut dyn Recorder,
     progress: &mut dyn FnMut(f64),
 ) -> Summary {
-    let began = Instant::now();
     let detectors = match grips {
         Grips::Reflex(detectors) => detectors,
         Grips::Bound | Grips::Constant(_) => DetectorSet::NONE,
@@ -83,9 +80,7 @@ fn closed_loop(
             progress(seconds_of(frame + 1));
         }
     }
-    let mut summary = board.end();
-    summary.wall_s = began.elapsed().as_secs_f64();
-    summary
+    board.end()
 }
 
 /// The drive of the next frame, by the logic's own.

@@ -15,10 +15,11 @@ use tenax_scene::builtin;
 use tenax_sim::board::Run;
 use tenax_sim::board::agreement::Agreement;
 use tenax_sim::board::emulated::Options;
+use tenax_sim::board::hash::of_run;
 use tenax_sim::board::simulated;
 use tenax_sim::session;
 
-use crate::hash::{compare, of_run};
+use crate::hash::compare;
 use crate::{Swing, agrees, plain, run, scene, stops};
 
 // Shows B8.

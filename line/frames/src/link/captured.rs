@@ -2,14 +2,15 @@
 
 use std::path::Path;
 
-use anyhow::{Context, bail, ensure};
+#[cfg(feature = "host")]
+use anyhow::Context;
+use anyhow::{bail, ensure};
 use mcap::read::Options;
 use mcap::{McapError, MessageStream};
 use tenax_hal_shim::wire::{BadFrame, VERSION};
 
 use super::{Heard, Inbox};
 use crate::protobuf;
-use crate::tool::out;
 
 pub const TOPIC: &str = "/line";
 
@@ -21,19 +22,32 @@ pub struct Captured {
 }
 
 /// The bytes of the line in a file: see [`Captured::open`].
+#[cfg(feature = "host")]
 pub fn line_of(path: &Path) -> anyhow::Result<Vec<u8>> {
     Ok(Captured::open(path)?.line)
 }
 
 impl Captured {
+    #[cfg(feature = "host")]
     /// A recording or a captured line. Of a recording that was cut short, its whole chunks; says so.
     /// Fails if the file cannot be read, or holds no message of a board.
     pub fn open(path: &Path) -> anyhow::Result<Self> {
         let name = path.display();
         let bytes = std::fs::read(path).with_context(|| format!("cannot read {name}"))?;
-        let captured = match is_recording(path) {
-            true => recorded(path, &bytes)?,
-            false => Self { line: bytes, came: Vec::new() },
+        let (captured, is_whole) = Self::of(&name.to_string(), bytes)?;
+        if !is_whole {
+            crate::tool::out::note!(
+                "{name}: its end is missing, as of a recorder that was killed; what is whole is read"
+            );
+        }
+        Ok(captured)
+    }
+
+    /// As [`open`](Self::open), of a file's name and bytes. False: the recording's end is missing.
+    pub fn of(name: &str, bytes: Vec<u8>) -> anyhow::Result<(Self, bool)> {
+        let (captured, is_whole) = match is_recording(Path::new(name)) {
+            true => recorded(name, &bytes)?,
+            false => (Self { line: bytes, came: Vec::new() }, true),
         };
         let mut other = None;
         let is_line = captured.frames().any(|(_, _, frame)| {
@@ -43,7 +57,7 @@ impl Captured {
             frame.is_ok()
         });
         match other {
-            _ if is_line => Ok(captured),
+            _ if is_line => Ok((captured, is_whole)),
             Some(version) => bail!("{name} is of wire version {version}, and this tool reads {VERSION}"),
             None => bail!(
                 "{name} is no board's line: none of its {} bytes belongs to a message. `tenax record` writes one",
@@ -63,8 +77,7 @@ impl Captured {
     }
 }
 
-fn recorded(path: &Path, bytes: &[u8]) -> anyhow::Result<Captured> {
-    let name = path.display();
+fn recorded(name: &str, bytes: &[u8]) -> anyhow::Result<(Captured, bool)> {
     ensure!(bytes.starts_with(mcap::MAGIC), "{name}: this is no MCAP file");
     let messages = MessageStream::new_with_options(bytes, Options::IgnoreEndMagic.into())?;
     let (mut captured, mut is_whole) =
@@ -87,10 +100,7 @@ fn recorded(path: &Path, bytes: &[u8]) -> anyhow::Result<Captured> {
         }
     }
     ensure!(!captured.came.is_empty(), "{name} has no topic {TOPIC}: no board's line was recorded in it");
-    if !is_whole {
-        out::note!("{name}: its end is missing, as of a recorder that was killed; what is whole is read");
-    }
-    Ok(captured)
+    Ok((captured, is_whole))
 }
 
 pub fn is_recording(path: &Path) -> bool {

@@ -1,36 +1,31 @@
-//! The state of a board for the page, as JSON: each change is sent to the pages, which merge it as [`View`] does.
+//! The state of a board for the page, as JSON: the page merges each change as [`View`] does.
 
 use std::collections::{BTreeMap, VecDeque};
-use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::time::SystemTime;
 
 use anyhow::{Context, bail};
 use serde_json::{Map, Value, json};
 use tenax_frames::link::{Counts, Heard};
-use tenax_frames::play;
 use tenax_frames::settings;
-use tenax_frames::truth;
 use tenax_frames::words::{answer_words, in_words, line_words, seconds, why, words};
 use tenax_hal_shim::channel::{CHANNELS, mv_from_sample};
 use tenax_hal_shim::detector::{DetectorId, DetectorSet};
-use tenax_hal_shim::wire::{About, Answer, BadFrame, EventKind, Setting, Slow, TickRecord, Up};
-use tenax_hal_shim::words::Fault;
+use tenax_hal_shim::wire::{About, Answer, BadFrame, Down, EventKind, Setting, Slow, TickRecord, Up};
+use tenax_hal_shim::words::{Fault, GripMode};
 use tenax_logic::setting::SettingId;
 
-use super::source::News;
-use crate::guide::selftest::{Selftest, Verdict};
+use crate::selftest::{Selftest, Verdict};
 use crate::tables::input;
 
 const HISTORY: usize = 800;
 const LOG: usize = 500;
-/// Changes that a page may be behind: 20 s. A page that is further behind is dropped, and connects again.
-const CHANGES: usize = 4_096;
 /// Time for each touch of the self-test, s: as in `tenax selftest`.
 const TOUCH_S: u32 = 8;
 
 #[derive(Default)]
 pub struct View {
     state: Map<String, Value>,
-    pages: Vec<SyncSender<Value>>,
+    changes: Vec<Value>,
     log: VecDeque<String>,
     points: VecDeque<Value>,
     pub counts: Counts,
@@ -52,21 +47,23 @@ impl View {
         &self.state
     }
 
-    pub fn join(&mut self) -> Receiver<Value> {
-        let (page, changes) = sync_channel(CHANGES);
+    /// The whole state, with which a page begins.
+    pub fn whole(&self) -> Value {
         let mut state = self.state.clone();
         state.insert("log".to_owned(), json!(self.log));
         state.insert("points".to_owned(), json!(self.points));
-        // There is room.
-        let _sent = page.try_send(Value::Object(state));
-        self.pages.push(page);
-        changes
+        Value::Object(state)
     }
 
-    /// Merges a change, an object, into the state and sends it to the pages.
+    /// Changes since the last call, each an object.
+    pub fn take_changes(&mut self) -> Vec<Value> {
+        std::mem::take(&mut self.changes)
+    }
+
+    /// Merges a change, an object, into the state.
     pub fn tell(&mut self, change: Value) {
         self.state.extend(change.as_object().cloned().unwrap_or_default());
-        self.pages.retain(|page| page.try_send(change.clone()).is_ok());
+        self.changes.push(change);
     }
 
     pub fn say(&mut self, line: &str) {
@@ -74,47 +71,40 @@ impl View {
         self.tell(json!({ "log": [line.trim_start()] }));
     }
 
-    pub fn take(&mut self, news: News) {
-        match news {
-            News::Open => {
-                self.tell(json!({ "gone": null }));
-                self.say("the line is open");
-            }
-            News::Gone(why) => {
-                if self.state.get("gone").is_none_or(Value::is_null) {
-                    self.say(&format!("the line is gone: {why}; it is opened again when it is back"));
-                }
-                if let Some(test) = &mut self.selftest {
-                    test.fail(&format!("the line is gone: {why}"));
-                    self.tell_selftest();
-                }
-                self.tell(json!({ "gone": why }));
-            }
-            News::Moved(words) => self.say(&words),
-            News::Frame(frame, counts) => {
-                if counts.bad_frames != self.counts.bad_frames || counts.missed != self.counts.missed {
-                    self.tell(json!({ "missed": counts.missed, "bad_frames": counts.bad_frames }));
-                }
-                self.counts = counts;
-                match frame {
-                    Ok(heard) => self.hear(&heard),
-                    Err(bad @ BadFrame::Version(_)) => self.tell(json!({ "other_version": why(bad) })),
-                    Err(_) => {}
-                }
-            }
-            News::Scene(truth::Told::Truth(truth)) => self.tell(json!({ "truth": truth })),
-            News::Scene(truth::Told::Bench(keys)) => self.tell(json!({ "bench": keys })),
-            News::Played(play::Told::Message(heard)) => self.hear(&heard),
-            News::Played(play::Told::At(playing)) => self.tell(json!({ "playing": playing })),
-            News::Played(play::Told::Again) => self.begin_anew(),
-            News::Answered(command, Ok(answer)) => {
-                self.say(&format!("> {}", answer_words(&command, &answer)));
-            }
-            News::Answered(command, Err(why)) => self.say(&format!("> {command:?}: {why}")),
+    pub fn open(&mut self) {
+        self.tell(json!({ "gone": null }));
+        self.say("the line is open");
+    }
+
+    pub fn gone(&mut self, why: &str) {
+        if self.state.get("gone").is_none_or(Value::is_null) {
+            self.say(&format!("the line is gone: {why}; it is opened again when it is back"));
+        }
+        if let Some(test) = &mut self.selftest {
+            test.fail(&format!("the line is gone: {why}"));
+            self.tell_selftest();
+        }
+        self.tell(json!({ "gone": why }));
+    }
+
+    /// A message, or why a frame is none; the counts so far.
+    pub fn frame(&mut self, frame: Result<&Heard, BadFrame>, counts: Counts) {
+        if counts.bad_frames != self.counts.bad_frames || counts.missed != self.counts.missed {
+            self.tell(json!({ "missed": counts.missed, "bad_frames": counts.bad_frames }));
+        }
+        self.counts = counts;
+        match frame {
+            Ok(heard) => self.hear(heard),
+            Err(bad @ BadFrame::Version(_)) => self.tell(json!({ "other_version": why(bad) })),
+            Err(_) => {}
         }
     }
 
-    fn hear(&mut self, Heard { received, missed }: &Heard) {
+    pub fn answered(&mut self, command: &Down, answer: &Answer) {
+        self.say(&format!("> {}", answer_words(command, answer)));
+    }
+
+    pub fn hear(&mut self, Heard { received, missed }: &Heard) {
         if self.state.get("other_version").is_some_and(Value::is_string) {
             self.tell(json!({ "other_version": null }));
         }
@@ -147,6 +137,16 @@ impl View {
             Up::Hello { .. } => self.begin_anew(),
             Up::Event(event) => match event.kind {
                 EventKind::Fault(fault) => self.fault(&fault),
+                EventKind::Pulse { margin_mn, believed, .. } => {
+                    let why = why_closed(margin_mn, believed);
+                    self.tell(json!({ "why": format!("{:.2} s: {why}", seconds(event.frame)) }));
+                }
+                EventKind::Mode { to: GripMode::Wearer, .. }
+                    if self.state.get("why").is_none_or(Value::is_null) =>
+                {
+                    let why = "the wearer moves the hand, and the reflex is silent.";
+                    self.tell(json!({ "why": format!("{:.2} s: {why}", seconds(event.frame)) }));
+                }
                 EventKind::Stroke { s2_permille, .. } => {
                     self.set(&[Setting { id: SettingId::S2.number(), value: s2_permille.into() }]);
                 }
@@ -164,15 +164,16 @@ impl View {
         }
     }
 
-    fn begin_anew(&mut self) {
+    pub fn begin_anew(&mut self) {
         self.faults.clear();
         self.points.clear();
-        self.tell(json!({ "restarted": true, "faults": [] }));
+        self.tell(json!({ "restarted": true, "faults": [], "why": null }));
     }
 
     fn slow(&mut self, slow: &Slow) {
         let vibration = slow.ticks.iter().map(|tick| tick.vibration).max().unwrap_or(0);
-        // Time (s), largest vibration envelope (mV), Ft/Fn, S2 in force, load (N), flexor and extensor (mV), direction of the shear (rad).
+        // Time (s), largest vibration envelope (mV), Ft/Fn, S2 in force, load (N), flexor and extensor (mV), direction of the shear (rad),
+        // margin (N).
         let point = json!([
             seconds(slow.frame),
             mv_from_sample(vibration),
@@ -182,6 +183,7 @@ impl View {
             slow.flexor_mv,
             slow.extensor_mv,
             slow.shear_mrad.map(|mrad| f64::from(mrad) / 1e3),
+            slow.forces.and_then(|forces| forces.margin_mn(slow.s2_permille)).map(|mn| f64::from(mn) / 1e3),
         ]);
         push(&mut self.points, HISTORY, point.clone());
         // Only a test injects slip.
@@ -228,10 +230,10 @@ impl View {
         self.tell(json!({ "faults": self.faults.values().collect::<Vec<_>>() }));
     }
 
-    pub fn backup(&self) -> Option<String> {
+    pub fn backup(&self, now: SystemTime) -> Option<String> {
         let settings: Vec<Setting> =
             self.settings.iter().map(|(&id, &value)| Setting { id, value }).collect();
-        self.about.as_ref().map(|about| settings::backup(about, &settings))
+        self.about.as_ref().map(|about| settings::backup(about, &settings, now))
     }
 
     /// Every setting with value, unit, range in force, default and meaning.
@@ -287,5 +289,53 @@ impl View {
             })
         });
         self.tell(json!({ "selftest": state }));
+    }
+}
+
+/// Why the reflex closed the hand, for somebody who has read nothing.
+fn why_closed(margin_mn: Option<i32>, believed: DetectorSet) -> String {
+    let hears = |id: DetectorId| match id {
+        DetectorId::S1 => "the films heard the vibration of a slip (s1)",
+        DetectorId::S2 => "the shear came near what friction holds (s2)",
+        DetectorId::Hebbian => "films and gauges together showed a slip (hebbian)",
+        DetectorId::Mlp => "the force array showed a slip (mlp)",
+        DetectorId::Photoelastic => "the light in the pad flickered (photoelastic)",
+        DetectorId::Injected => "a test said so",
+    };
+    let all: Vec<&str> = DetectorId::ALL.into_iter().filter(|id| believed.contains(*id)).map(hears).collect();
+    let cause = if all.is_empty() { "the margin was used up".to_owned() } else { all.join(", and ") };
+    let margin = match margin_mn {
+        Some(mn @ 0..) => format!("{:.2} N of margin was left", f64::from(mn) / 1e3),
+        Some(mn) => format!("{:.2} N of margin was missing", f64::from(-mn) / 1e3),
+        None => "the margin was not known".to_owned(),
+    };
+    format!("the reflex closed the hand, because {cause}; {margin}.")
+}
+
+/// The command of a page's path: `/zero`, `/set/s1-mv/120`.
+pub fn command(path: &str) -> Option<Down> {
+    match path {
+        "/zero" => Some(Down::Zero),
+        "/calibrate" => Some(Down::CalibrateEmg),
+        _ => {
+            let (name, value) = path.strip_prefix("/set/")?.split_once('/')?;
+            let id = SettingId::by_name(name)?;
+            Some(Down::Set(Setting { id: id.number(), value: value.parse().ok()? }))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_path_is_a_command_or_none() {
+        let set = Down::Set(Setting { id: SettingId::S1.number(), value: 120 });
+        assert_eq!(command("/set/s1-mv/120"), Some(set));
+        assert_eq!(command("/zero"), Some(Down::Zero));
+        for wrong in ["/", "/set/s1-mv", "/set/s1/120", "/set/s1-mv/x", "/drive"] {
+            assert_eq!(command(wrong), None, "{wrong}");
+        }
     }
 }

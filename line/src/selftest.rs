@@ -1,19 +1,14 @@
 //! Tests every sensor's wire: at rest each has its level, and what is touched is what moves.
 //! A prompt begins with the verb and the channel's name: it can be piped to a served scene's bench.
 
-use std::time::{Duration, Instant};
-
-use anyhow::{Context, bail};
+use anyhow::bail;
 use serde::Serialize;
-use tenax_frames::link::Client;
 use tenax_hal_shim::channel::{
     CHANNELS, COUNT, Channel, FRAME_HZ, MOTOR_CURRENT, OPENING, PVDF, PVDF_COUNT, REFERENCE_MV, Role,
     SAMPLE_MAX, by_name,
 };
 use tenax_hal_shim::wire::{Senses, Up};
-use tenax_logic::setting::SettingId;
 
-use super::Say;
 use crate::tables::input;
 
 /// Time at rest, and of a touch once something moves, frames.
@@ -23,7 +18,7 @@ const WATCHED: u32 = FRAME_HZ / 2;
 const STILL: usize = 20;
 const STILL_WITHIN: u32 = 3 * FRAME_HZ;
 /// A board that is silent for longer sends no readings.
-const SILENCE: Duration = Duration::from_secs(4);
+const SILENCE: u32 = 4 * FRAME_HZ;
 /// Range of a working wire, mV: films have no narrower one of their own.
 const DEAD_MV: f64 = 45.0;
 const SHORT_MV: f64 = 3_255.0;
@@ -118,7 +113,8 @@ pub struct Selftest {
     pub verdicts: [Option<Verdict>; COUNT],
     pub said: Vec<String>,
     pub failed: Option<String>,
-    heard: Instant,
+    /// The first slow frame after the last reading.
+    silent_from: Option<u32>,
     limit: u32,
     step: Step,
     began: Option<u32>,
@@ -146,7 +142,7 @@ impl Selftest {
                 REST_PROMPT.to_owned(),
             ],
             failed: None,
-            heard: Instant::now(),
+            silent_from: None,
             limit: limit_s * FRAME_HZ,
             step: Step::Rest,
             began: None,
@@ -155,10 +151,6 @@ impl Selftest {
             rest_mv: [0.0; COUNT + PVDF_COUNT],
             noise_mv: [0.0; COUNT + PVDF_COUNT],
         })
-    }
-
-    fn is_silent(&self) -> bool {
-        self.heard.elapsed() > SILENCE
     }
 
     pub fn is_over(&self) -> bool {
@@ -196,7 +188,12 @@ impl Selftest {
             Up::Hello { .. } if self.began.is_some() => {
                 self.fail("the board was switched on anew: start again");
             }
-            _ if self.is_silent() => self.fail("the board sends no readings"),
+            Up::Slow(slow) => {
+                let from = *self.silent_from.get_or_insert(slow.frame);
+                if slow.frame.wrapping_sub(from) > SILENCE {
+                    self.fail("the board sends no readings");
+                }
+            }
             _ => {}
         }
     }
@@ -213,7 +210,7 @@ impl Selftest {
         for (mv, sample) in row.iter_mut().zip(senses.samples.iter().chain(&senses.films)) {
             *mv = f64::from(*sample) * f64::from(REFERENCE_MV) / f64::from(SAMPLE_MAX);
         }
-        (self.last, self.heard) = (senses.frame, Instant::now());
+        (self.last, self.silent_from) = (senses.frame, None);
         self.rows.push(row);
         match self.step {
             Step::Rest if since >= REST => {
@@ -426,28 +423,4 @@ fn named(words: &[String]) -> anyhow::Result<Vec<usize>> {
         bail!("no channel begins with `{word}`: `tenax tables wiring` has them");
     }
     Ok((0..COUNT).filter(|&n| words.is_empty() || words.iter().any(|word| fits(n, word))).collect())
-}
-
-/// Runs the test to its end; whether all channels pass.
-pub fn run(client: &mut Client, words: &[String], limit_s: u32, say: Say<'_>) -> anyhow::Result<bool> {
-    let (head, no_wearer) =
-        (client.setting(SettingId::Head)? != 0, client.setting(SettingId::NoWearer)? != 0);
-    let mut test = Selftest::named(words, head, no_wearer, limit_s)?;
-    let mut printed = 0;
-    loop {
-        test.said[printed..].iter().try_for_each(|line| say(line))?;
-        printed = test.said.len();
-        if let Some(why) = &test.failed {
-            bail!("{why}");
-        }
-        if test.is_over() {
-            return Ok(test.passes());
-        }
-        client.keep_streaming(false)?;
-        if let Some(heard) = client.next_message().context("the line ended")? {
-            test.take(&heard.received.message);
-        } else if test.is_silent() {
-            bail!("the board sends nothing");
-        }
-    }
 }
