@@ -183,6 +183,9 @@ def _write(kind: Any, value: Any) -> bytes:
         return b"\0" if value is None else b"\1" + _write(kind[1], value)
     if kind[0] == "arr":
         return b"".join(_write(kind[2], own) for own in value)
+    if "struct" in TYPES[kind]:
+        given = vars(value).values() if isinstance(value, SimpleNamespace) else value
+        return b"".join(_write(own, part) for (_, own), part in zip(TYPES[kind]["struct"], given))
     variants = TYPES[kind]["enum"]
     if isinstance(value, SimpleNamespace):
         # As it was read.
