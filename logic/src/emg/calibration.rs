@@ -142,7 +142,7 @@ impl Calibration {
         let (phase, within) = ((since / PROMPT_FRAMES) as usize, since % PROMPT_FRAMES);
         let phase = match phase {
             0 | 1 => phase,
-            2 => self.last,
+            2 => self.last.min(2),
             _ => return self.end(frame),
         };
         self.phases[phase].range(uv);
