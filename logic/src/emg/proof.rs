@@ -89,6 +89,8 @@ impl Swings {
 pub struct Proof {
     /// Highest level of each block, oldest first, 0 before the first reading; the last is under way.
     blocks: [[i16; BLOCKS]; 2],
+    /// Mean levels of the same blocks, Q3.
+    means: [[i32; BLOCKS]; 2],
     frames: u8,
     wish: Wish,
     age: u16,
@@ -136,7 +138,12 @@ impl Proof {
         self.over = if over { self.over.saturating_add(1) } else { 0 };
         self.age = self.age.saturating_add(1);
         let heard = hears.map(|[rest, least]| {
-            let (rise, least) = (self.rise(1 - mover, levels[(1 - mover) & 1], rest), least.max(LEAST_HEARD));
+            let (other, least) = (1 - mover, least.max(LEAST_HEARD));
+            let rise = match wish {
+                Wish::Open => self.rise(other, levels[other & 1], rest),
+                // Nothing is lost while it is averaged: a closing begins without a proof.
+                _ => self.mean_rise(other, rest),
+            };
             self.at_once |= self.returned == 0 && self.age <= AT_ONCE_FRAMES && rise >= 2 * least;
             rise >= least * (1 + i32::from(self.wary))
         });
@@ -180,17 +187,23 @@ impl Proof {
         if next {
             self.frames = 0;
         }
-        for (blocks, level) in self.blocks.iter_mut().zip(levels) {
+        for ((blocks, means), level) in self.blocks.iter_mut().zip(&mut self.means).zip(levels) {
             if next {
                 // `rotate_left` pulls in memmove.
                 for n in 1..BLOCKS {
                     blocks[n - 1] = blocks[n];
+                    means[n - 1] = means[n];
                 }
             }
             let Some(level) = level else { continue };
             let level = level as i16;
             let last = &mut blocks[BLOCKS - 1];
             *last = if next { level } else { level.max(*last) };
+            if means[0] == 0 {
+                *means = [8 * i32::from(level); BLOCKS];
+            }
+            let mean = &mut means[BLOCKS - 1];
+            *mean += (8 * i32::from(level) - *mean) >> 2;
         }
     }
 
@@ -233,6 +246,12 @@ impl Proof {
 
     fn before(&self, n: usize) -> i32 {
         self.blocks[n & 1].iter().take(BEFORE).copied().max().map_or(0, i32::from)
+    }
+
+    /// Rise of the mean above that of before, or above rest if higher, Q10 octaves.
+    fn mean_rise(&self, n: usize, rest: i32) -> i32 {
+        let [before, .., now] = self.means[n & 1];
+        now / 8 - (before / 8).max(rest)
     }
 
     /// Rise above the lower level of before and at the wish's begin, or above rest if higher, Q10 octaves.

@@ -234,7 +234,7 @@ pub(super) mod tests {
             {
                 for row in 0..300 {
                     let lively = |n: u32| {
-                        1.0 + 0.1 * (f64::from(row + 300 * turn) * (0.13 + 0.04 * f64::from(n))).sin()
+                        1.0 + 0.25 * (f64::from(row + 300 * turn) * (0.13 + 0.04 * f64::from(n))).sin()
                     };
                     uv.push([mv[0] * 1e3 * lively(0), 0.0, mv[1] * 1e3 * lively(1), 0.0]);
                     labels.push(label);
