@@ -9,8 +9,8 @@ _Settings = Sequence[Tuple[str, int]]
 _Columns = Sequence[Tuple[str, _Floats]]
 
 __all__ = [
-    "CHANNELS", "Camera", "DETECTORS", "FAMILIES", "Fingertip", "MODES", "OBSERVED", "REST_V", "SOURCES", "Skin", "World", "drawn", "edges_of", "features", "hebbian",
-    "labelled_recordings", "mlp", "photoelastic", "pins", "replay", "run", "s1", "s2", "scenes", "settings",
+    "CHANNELS", "Camera", "DETECTORS", "FAMILIES", "Fingertip", "MODES", "OBSERVED", "REST_V", "SOURCES", "Skin", "World", "drawn", "features", "hebbian",
+    "mlp", "photoelastic", "pins", "replay", "run", "s1", "s2", "scenes", "settings",
 ]
 
 CHANNELS: Final[List[str]]
@@ -32,8 +32,6 @@ def s2(normal_n: _Floats, shear_n: _Floats, rate_hz: float, settings: _Settings)
 def mlp(volts: _Floats, rate_hz: float) -> _Table: ...
 def photoelastic(volts: _Floats, rate_hz: float, settings: _Settings) -> _Table: ...
 def features(volts: _Floats, rate_hz: float, others: Optional[Tuple[int, int, int, int]] = None) -> NDArray[np.int16]: ...
-def labelled_recordings(path: str, recipe: Optional[str]) -> Tuple[List[Dict[str, Any]], List[int]]: ...
-def edges_of(path: str, recipe: Optional[str], network: str) -> Optional[str]: ...
 def hebbian(
     films_v: _Floats, strain_v: Optional[_Floats], held: _Floats, rate_hz: float, taught_s: _Floats,
     codes: NDArray[np.int64], knows: Optional[bytes],
