@@ -54,7 +54,7 @@ const PROGRAMS: [Program; 4] = [
             ("train", "intent recognition on recordings of people"),
             ("evaluate", "intent recognition, scored on people"),
             ("chart", "the figures of docs/"),
-            ("vision", "skin and object through the camera"),
+            ("vision", "skin and object in drawn pictures"),
         ],
     },
 ];
