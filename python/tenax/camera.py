@@ -60,10 +60,11 @@ class Taught:
 
     def __init__(self, port: str) -> None:
         self.board, self.holds, self._was_open, self._refused = tenax.open(port), False, False, False
-        try:
-            self.board.ask("Open", self.board.ask("Hello", within=1.0).nonce)
-        except (AttributeError, TimeoutError):
-            print("the board offered no session; it will not listen to the camera", file=sys.stderr)
+        offered = self.board.ask("Hello")
+        if offered.kind == "Nonce":
+            self.board.ask("Open", offered.value)
+        else:
+            print(f"the board offers no session ({offered.kind}) and will not listen to the camera", file=sys.stderr)
         threading.Thread(target=self._read, daemon=True).start()
 
     def teach(self, codes: Tuple[int, int], age_s: float) -> None:

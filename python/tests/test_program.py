@@ -1,13 +1,17 @@
 """The package and the program `tenax` say the same, byte for byte. Needs what `cargo tenax test` builds."""
 
+import contextlib
+import io
 import json
 import os
 import subprocess
 import tempfile
+import time
 import unittest
 from pathlib import Path
 
 import tenax
+from tenax import camera
 
 from test_fingertip import rig
 
@@ -33,6 +37,21 @@ class Program(unittest.TestCase):
             rows = [",".join(samples), *(",".join(map(repr, row)) for row in zip(*(own.tolist() for own in samples.values())))]
             path.write_text("\n".join(rows) + "\n")
             self.same("friction_rig_drawn", tenax.replay(path, seed=2), "--replay", str(path), "--seed", "2")
+
+    def test_a_served_hand_takes_a_cameras_codes(self) -> None:
+        with tempfile.TemporaryDirectory() as out:
+            serving = subprocess.Popen([PROGRAM, "run", "--host", "--serve", "--scene", "glass", "--out", out], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+            try:
+                port = serving.stdout.readline().split()[-1]
+                told = io.StringIO()
+                with contextlib.redirect_stderr(told):
+                    taught = camera.Taught(port)
+                    taught.teach((1, -1), 0.02)
+                    time.sleep(0.5)
+                self.assertEqual(told.getvalue(), "")
+            finally:
+                serving.kill()
+                serving.communicate()
 
 
 if __name__ == "__main__":
