@@ -20,6 +20,11 @@ pub struct Args {
     /// front and emg only: folder for SVG and CSV
     #[arg(long, value_name = "DIR", default_value = "out")]
     out: PathBuf,
+    /// front only: drawn worlds, and what they are drawn from
+    #[arg(long, value_name = "N", default_value_t = 200)]
+    worlds: u32,
+    #[arg(long, value_name = "S", default_value_t = 1000)]
+    seed: u64,
     /// table only: how to print the figures
     #[arg(long, value_enum, default_value_t = Format::Text)]
     report: Format,
@@ -27,8 +32,8 @@ pub struct Args {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Subject {
-    /// Newtons beyond need against millimetres slid, of each grip: the hand, each detector alone, all but each, no reflex,
-    /// constant grip, the bound
+    /// Newtons beyond need against losses and millimetres on drawn worlds: the hand, detectors alone, no reflex, constant
+    /// grips, a causal oracle, the bound
     Front,
     /// Accuracy and latency of intent recognition on recorded people against false motions: the hand and plain control
     Emg,
@@ -38,7 +43,7 @@ enum Subject {
 
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     let chart: Chart = match args.subject {
-        Subject::Front => with_bar("front", |progress| front::front(progress))?,
+        Subject::Front => with_bar("front", |progress| front::front(args.seed, args.worlds, progress))?,
         Subject::Emg => emg::chart(&workspace::root()?.join(RECORDINGS))?,
         Subject::Table => {
             let table = with_bar("table", |progress| table::table(&table::PLANS, progress))?;

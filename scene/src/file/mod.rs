@@ -108,6 +108,12 @@ impl SceneFile {
             .map_err(|error| sources.of_toml(error.span().unwrap_or(0..0), error.message()))
     }
 
+    /// Force that the unloaded motor adds to the grip within its dead time, N; 0 without an object. Each pad takes half of the way.
+    pub fn force_in_flight_n(&self) -> f64 {
+        let stiffness = self.object.as_ref().map_or(0.0, |object| object.get_ref().stiffness_n_per_mm.get());
+        self.gripper.speed_mm_s.get() * self.gripper.dead_time_ms.get() / 1e3 * stiffness / 2.0
+    }
+
     pub fn trusts_line(&self) -> bool {
         self.line_trusted.unwrap_or(!self.command.is_empty() || self.camera.teaches || self.skin.is_some())
     }
