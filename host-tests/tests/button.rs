@@ -3,7 +3,7 @@
 use tenax_hal_shim::channel::{MYO_EXTENSOR, MYO_FLEXOR};
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::EventKind;
-use tenax_hal_shim::words::{Calibration, CalibrationRefusal, DriveSource, Kept, Prompt};
+use tenax_hal_shim::words::{Calibration, CalibrationRefusal, DriveSource, Fit, Kept, Prompt};
 use tenax_host_tests::{Bench, closes, opens};
 use tenax_logic::store::keeper::Keeper;
 
@@ -76,6 +76,31 @@ fn an_empty_hand_calibrates_by_the_button_and_keeps_it() {
     let last = bench.kinds().filter(|kind| matches!(kind, EventKind::Calibration(_))).last();
     assert!(matches!(last, Some(EventKind::Calibration(Calibration::Done { .. }))), "{last:?}");
     assert!(saves_calibration(&mut bench, &mut keeper));
+}
+
+#[test]
+fn moved_electrodes_are_learned_by_the_button_from_three_closings_and_openings() {
+    let mut bench = Bench::new(46);
+    bench.run(1_000);
+    let contracts = |bench: &mut Bench, [flexor_mv, extensor_mv]: [f64; 2], frames: u32| {
+        bench.muscles(flexor_mv, extensor_mv);
+        bench.run(frames);
+        bench.muscles(50.0, 50.0);
+        bench.run(frames.min(1_200));
+    };
+    for _ in 0..12 {
+        contracts(&mut bench, [600.0, 600.0], 3_000);
+    }
+    assert_eq!(bench.count(EventKind::Calibration(Calibration::Fit(Fit::Moved))), 1);
+    bench.press_button(CALIBRATES);
+    bench.run(4_000);
+    for mv in [[600.0, 250.0], [300.0, 900.0]].into_iter().cycle().take(6) {
+        contracts(&mut bench, mv, 2_400);
+    }
+    let last = bench.kinds().filter(|kind| matches!(kind, EventKind::Calibration(_))).last();
+    assert!(matches!(last, Some(EventKind::Calibration(Calibration::Done { .. }))), "{last:?}");
+    bench.muscles(300.0, 900.0);
+    assert!(opens(&bench.run(1_000)));
 }
 
 #[test]

@@ -155,9 +155,12 @@ impl Muscles {
         self.watch = Watch::default();
     }
 
-    /// The caller refuses it while something is held.
-    pub fn begin_calibration(&mut self, frame: u32) {
-        self.lesson = Some(Lesson { calibration: Calibration::begin(frame), asked: None });
+    /// The caller refuses it while something is held. `by_button`: a short one while moved electrodes are reported.
+    pub fn begin_calibration(&mut self, frame: u32, by_button: bool) {
+        let kept = self.model.as_ref().filter(|_| by_button && self.watch.fit() == Fit::Moved);
+        let calibration =
+            kept.map_or_else(|| Calibration::begin(frame), |kept| Calibration::short(frame, kept));
+        self.lesson = Some(Lesson { calibration, asked: None });
     }
 
     pub const fn is_calibrating(&self) -> bool {

@@ -17,9 +17,11 @@ pub fn chart(folder: &Path) -> anyhow::Result<Chart> {
         let words = [point.control, point.calibration].map(str::to_owned);
         words.into_iter().chain(numbers(point).map(|number| format!("{number:.4}"))).collect()
     });
-    let header = "control,calibration,asks,false_per_hour,right,latency_p50_s,latency_p95_s";
+    let header =
+        "control,calibration,asks,false_per_hour,right,repetitions_right,latency_p50_s,latency_p95_s";
     let csv = csv(header, rows)?;
     let right = |point: &Point| point.right();
+    let repetitions = |point: &Point| point.score.repetitions_right;
     let late = |point: &Point| point.score.latency_s_p95;
     let panels = ["same session", "other posture"]
         .into_iter()
@@ -27,6 +29,7 @@ pub fn chart(folder: &Path) -> anyhow::Result<Chart> {
             let own: Vec<&Point> = points.iter().filter(|point| point.calibration == calibration).collect();
             [
                 panel(calibration, Axis::even("windows right", 0.5, 1.0), &own, &right),
+                panel(calibration, Axis::even("repetitions right", 0.3, 1.0), &own, &repetitions),
                 panel(calibration, Axis::even("label to wish, p95, s", 0.0, 2.0), &own, &late),
             ]
         })
@@ -34,15 +37,16 @@ pub fn chart(folder: &Path) -> anyhow::Result<Chart> {
     let sheet = Sheet::new(
         "What the wearer wants: the hand and plain two-site control",
         "each asks for more or less of the calibrated contraction; all people and sessions together; none an hour is drawn at 1",
-        2,
+        3,
         panels,
     );
     Chart::new("emg", &sheet, csv)
 }
 
-fn numbers(point: &Point) -> [f64; 5] {
+fn numbers(point: &Point) -> [f64; 6] {
     let score = &point.score;
-    [point.asks, score.false_per_hour, point.right(), score.latency_s_p50, score.latency_s_p95]
+    let right = [point.right(), score.repetitions_right];
+    [point.asks, score.false_per_hour, right[0], right[1], score.latency_s_p50, score.latency_s_p95]
 }
 
 fn panel(title: &str, y: Axis, points: &[&Point], value: &dyn Fn(&Point) -> f64) -> Panel {

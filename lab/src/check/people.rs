@@ -1,11 +1,11 @@
-//! People's envelopes: medians of intent recognition over those whom the proof was chosen on, and over those kept apart.
+//! People's envelopes: medians of intent recognition over those whom the proof was chosen on, and over the others, whose scores were read meanwhile.
 
 use std::path::Path;
 
 use super::{Bar, Verdict};
 use crate::evaluate::emg;
 
-/// Folder, whom proof and doubt were chosen on, and whom not. The other constants are fitted to MyoBock 1 to 4.
+/// Folder, whom proof and doubt were chosen on, and whose scores were only read. The other constants are fitted to MyoBock 1 to 4.
 const PEOPLE: [(&str, &str, &[u32], &[u32]); 2] = [
     ("prosthesis electrodes", "myobock", &[1, 2], &[3, 4]),
     ("armband", "myo", &[1, 2, 3, 4, 5], &[6, 7, 8, 9]),
@@ -13,8 +13,8 @@ const PEOPLE: [(&str, &str, &[u32], &[u32]); 2] = [
 
 pub fn bars(data: &Path) -> anyhow::Result<Vec<Bar>> {
     let mut bars = Vec::new();
-    for (front_end, folder, chosen_on, apart) in PEOPLE {
-        for (part, people) in [("chosen on", chosen_on), ("kept apart", apart)] {
+    for (front_end, folder, chosen_on, read) in PEOPLE {
+        for (part, people) in [("chosen on", chosen_on), ("read while choosing", read)] {
             bars.push(bar(&format!("{front_end}, people {people:?}, {part}"), &data.join(folder), people)?);
         }
     }

@@ -32,6 +32,8 @@ pub struct Kinds<T> {
     pub other_posture: Option<T>,
     /// Calibrated on the first day, scored on the others.
     pub first_day_kept: Option<T>,
+    /// Calibrated in that session by three closings and openings at the hand.
+    pub short_donning: Option<T>,
 }
 
 impl<T> Kinds<T> {
@@ -40,6 +42,7 @@ impl<T> Kinds<T> {
             same_session: value(Kind::SameSession),
             other_posture: value(Kind::OtherPosture),
             first_day_kept: value(Kind::FirstDayKept),
+            short_donning: value(Kind::ShortDonning),
         }
     }
 }
@@ -51,6 +54,8 @@ pub struct Person {
     pub scores: Kinds<Score>,
     /// Refused calibrations and their reasons, by day.
     pub refused: BTreeMap<u32, String>,
+    /// Short ones, of all days but the first.
+    pub not_donned: BTreeMap<u32, String>,
     /// Calibrations that were tried.
     pub sessions: usize,
 }
@@ -143,11 +148,11 @@ pub fn evaluate(folder: &Path, people: &[u32], faults: u32, seed: u64) -> anyhow
 }
 
 pub(super) fn person(fitted: &'static Fitted, number: u32, days: &Days) -> (Person, Sessions) {
-    let Trials { all, refused } = Trials::of(days);
+    let Trials { all, refused, not_donned } = Trials::of(days);
     let counted = all.iter().map(|trial| (trial.kind, trial.counted(&trial.play(fitted))));
     let sessions = Sessions(counted.collect());
     let scores = Kinds::of(|kind| sessions.score(kind));
-    (Person { person: number, scores, refused, sessions: days.len() }, sessions)
+    (Person { person: number, scores, refused, not_donned, sessions: days.len() }, sessions)
 }
 
 #[cfg(test)]

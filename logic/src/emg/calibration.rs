@@ -11,6 +11,14 @@ use super::trust::TOP_UV;
 const PROMPTS: [Prompt; 3] = [Prompt::Rest, Prompt::Close, Prompt::Open];
 pub const PROMPT_FRAMES: u32 = 5 * FRAME_HZ;
 const REACTION_FRAMES: u32 = 7 * FRAME_HZ / 10;
+/// Short calibration: rest, and the whole; contractions, closing first; readings of one above rest, of its begin that
+/// does not count, and of the rest that ends it: 0.5 s, 0.2 s, 0.1 s.
+const SHORT_REST_FRAMES: u32 = 2 * FRAME_HZ;
+const WHOLE_FRAMES: u32 = 3 * PROMPT_FRAMES;
+const TURNS: u32 = 6;
+const TURN_READINGS: u32 = 120;
+const BEGIN_READINGS: u32 = 48;
+const QUIET_READINGS: u32 = 24;
 const MISSING_PERMILLE: u32 = 50;
 const TOP_PERMILLE: u32 = 100;
 const HELD_PERMILLE: u32 = 600;
@@ -118,9 +126,32 @@ fn separation(distance: i32, variances: [i64; 2]) -> i32 {
     ((i64::from(distance.abs()) * 1_000) / i64::from(deviation)).min(1_000_000) as i32
 }
 
+/// Contractions in turn, each as long as the wearer makes it.
+#[derive(Clone, Copy, Debug, Default)]
+struct Turns {
+    closing_site: usize,
+    turn: u32,
+    held: u32,
+    quiet: u32,
+}
+
+impl Turns {
+    /// True if the reading counts.
+    fn take(&mut self, stands_out: bool) -> bool {
+        self.quiet = if stands_out { 0 } else { self.quiet + 1 };
+        self.held += u32::from(stands_out);
+        if self.held >= TURN_READINGS && self.quiet >= QUIET_READINGS {
+            (self.turn, self.held) = (self.turn + 1, 0);
+        }
+        self.held > BEGIN_READINGS
+    }
+}
+
 #[derive(Clone, Debug)]
 pub struct Calibration {
     began: u32,
+    /// Of a short calibration.
+    turns: Option<Turns>,
     phases: [Phase; 3],
     /// Steps that were asked for again, and the one of them that is under way.
     again: [bool; 3],
@@ -130,7 +161,20 @@ pub struct Calibration {
 
 impl Calibration {
     pub fn begin(frame: u32) -> Self {
-        Self { began: frame, phases: [Phase::default(); 3], again: [false; 3], last: 2, over: None }
+        Self {
+            began: frame,
+            turns: None,
+            phases: [Phase::default(); 3],
+            again: [false; 3],
+            last: 2,
+            over: None,
+        }
+    }
+
+    /// Three closings and openings in turn, for a wearer whose electrodes have moved, not exchanged.
+    pub fn short(frame: u32, kept: &EmgModel) -> Self {
+        let turns = Turns { closing_site: kept.closing_site(), ..Turns::default() };
+        Self { turns: Some(turns), ..Self::begin(frame) }
     }
 
     /// Envelopes above the live zero, uV, flexor first; None: no number. Once for each pair of readings.
@@ -139,25 +183,36 @@ impl Calibration {
             return Progress::Done(result);
         }
         let since = frame.wrapping_sub(self.began);
-        let (phase, within) = ((since / PROMPT_FRAMES) as usize, since % PROMPT_FRAMES);
-        let phase = match phase {
-            0 | 1 => phase,
-            2 => self.last.min(2),
-            _ => return self.end(frame),
+        if self.is_over(frame) {
+            return self.end(frame);
+        }
+        let (phase, within, left) = match &self.turns {
+            None => {
+                let (step, within) = ((since / PROMPT_FRAMES) as usize, since % PROMPT_FRAMES);
+                (if step < 2 { step } else { self.last.min(2) }, within, PROMPT_FRAMES - within)
+            }
+            Some(_) if since < SHORT_REST_FRAMES => (0, since, SHORT_REST_FRAMES - since),
+            Some(turns) => (1 + turns.turn as usize % 2, since, WHOLE_FRAMES - since),
         };
         self.phases[phase].range(uv);
         if within >= REACTION_FRAMES {
             let rest = self.phases[0].mean();
             let stands_out =
                 |point: Point| point[0] - rest[0] >= STANDS_OUT || point[1] - rest[1] >= STANDS_OUT;
-            self.phases[phase].take(uv, |point| phase == 0 || stands_out(point));
+            let counts = match (&mut self.turns, uv) {
+                (Some(turns), [Some(flexor), Some(extensor)]) if phase > 0 => {
+                    turns.take(stands_out([level_of(flexor), level_of(extensor)]))
+                }
+                _ => true,
+            };
+            self.phases[phase].take(uv, |point| phase == 0 || counts && stands_out(point));
         }
-        Progress::Asks(PROMPTS[phase], PROMPT_FRAMES - within)
+        Progress::Asks(PROMPTS[phase], left)
     }
 
     fn end(&mut self, frame: u32) -> Progress {
         let result = match self.stuck() {
-            Some(step) if !self.again[step] => {
+            Some(step) if !self.again[step] && self.turns.is_none() => {
                 (self.phases[step], self.again[step], self.last) = (Phase::default(), true, step);
                 self.began = frame.wrapping_sub(2 * PROMPT_FRAMES);
                 return Progress::Asks(PROMPTS[step], PROMPT_FRAMES);
@@ -178,8 +233,9 @@ impl Calibration {
         step.map(|(step, _)| step)
     }
 
-    pub const fn is_over(&self, frame: u32) -> bool {
-        frame.wrapping_sub(self.began) >= 3 * PROMPT_FRAMES
+    pub fn is_over(&self, frame: u32) -> bool {
+        let has_turned = self.turns.is_some_and(|turns| turns.turn >= TURNS);
+        has_turned || frame.wrapping_sub(self.began) >= WHOLE_FRAMES
     }
 
     fn conclude(&self) -> Result<EmgModel, Refusal> {
@@ -187,16 +243,23 @@ impl Calibration {
         for phase in &self.phases {
             phase.check()?;
         }
-        if !close.has(close.summed, HELD_PERMILLE) {
+        let is_held = |phase: &Phase, turn: u32| match self.turns {
+            Some(turns) => turns.turn >= turn,
+            None => phase.has(phase.summed, HELD_PERMILLE),
+        };
+        if !is_held(close, TURNS - 1) {
             return Err(Refusal::NoClosing);
         }
-        if !open.has(open.summed, HELD_PERMILLE) {
+        if !is_held(open, TURNS) {
             return Err(Refusal::NoOpening);
         }
         let spread = [root(rest.variance(0)), root(rest.variance(1))];
         // First a reason for what is no model at all, then the separation.
         let model = EmgModel::new(rest.mean(), close.mean(), open.mean(), spread, LEAST_SEPARATION_PERMILLE)?;
         let (closes, opens) = (model.closing_site(), model.opening_site());
+        if self.turns.is_some_and(|turns| turns.closing_site != closes) {
+            return Err(Refusal::SameDirection);
+        }
         if root(close.variance(closes)) < STILL || root(open.variance(opens)) < STILL {
             return Err(Refusal::NotAMuscle);
         }
@@ -311,6 +374,38 @@ mod tests {
         assert_eq!((prompts, result.is_ok()), (vec![Rest, Close, Open, Close], true));
         let (prompts, result) = asked(|phase, n| states(phase, n, GOOD));
         assert_eq!((prompts, result.is_ok()), (vec![Rest, Close, Open], true));
+    }
+
+    // Shows W7.
+    #[test]
+    fn three_closings_and_openings_in_turn_are_a_calibration_that_exchanges_nothing() {
+        const MOVED: [[f64; 2]; 3] = [[80.0, 60.0], [600.0, 250.0], [300.0, 900.0]];
+        let kept = run(|phase, n| states(phase, n, GOOD)).unwrap();
+        let don = |order: [u32; 2], turns: u32, mv: [[f64; 2]; 3]| {
+            let mut calibration = Calibration::short(7, &kept);
+            for n in 0u32.. {
+                // 2 s of rest, then 1.2 s of each contraction and 0.6 s of rest.
+                let turn = n.saturating_sub(480) / 432;
+                let rests = n < 480 || n % 432 < 144 || turn >= turns;
+                let phase = if rests { 0 } else { order[turn as usize % 2] };
+                let uv = states(phase, n, mv).map(|mv| Some((mv * 1e3) as i32));
+                if let Progress::Done(result) = calibration.take(7 + n * 25 / 3, uv) {
+                    return (n / 240, result);
+                }
+            }
+            unreachable!("it ends by itself")
+        };
+        let (seconds, model) = don([1, 2], 6, MOVED);
+        let model = model.unwrap();
+        assert!(seconds < 14, "{seconds}");
+        for (point, mv) in [model.rest(), model.close(), model.open()].iter().zip(MOVED) {
+            for n in 0..2 {
+                assert!((point[n] - level_of((mv[n] * 1e3) as i32)).abs() < 60, "{point:?} {mv:?}");
+            }
+        }
+        assert_eq!(don([2, 1], 6, MOVED).1, Err(Refusal::SameDirection));
+        assert_eq!(don([1, 2], 6, MOVED.map(|[a, b]| [b, a])).1, Err(Refusal::SameDirection));
+        assert_eq!(don([1, 2], 5, MOVED), (15, Err(Refusal::NoOpening)));
     }
 
     #[test]

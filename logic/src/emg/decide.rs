@@ -5,7 +5,7 @@ use super::constants::Fitted;
 use super::fitted::FITTED;
 use super::level::{FLOOR_LEVEL, level_of, uv_of};
 use super::model::EmgModel;
-use super::trust::HUM_PART;
+use super::trust::HUM_SHIFT;
 
 /// Top of the sensor's range, uV: above, no motion starts, but one that has started goes on.
 pub const OVER_UV: i32 = 2_950_000;
@@ -77,7 +77,7 @@ struct Sites {
     both: [i32; 2],
     /// Least rise of the other electrode with each wish; None if its signal is too small.
     hears: [Option<i32>; 2],
-    /// Calibrated rise of the other electrode with each wish, Q10 octaves.
+    /// Its calibrated rise, Q10 octaves.
     other: [i32; 2],
     works_uv: [i32; 2],
     /// Share from which an opening begins beside a doubted closing electrode.
@@ -128,6 +128,22 @@ impl Sites {
             }),
         }
     }
+
+    /// Part of the other electrode in an activity of a site.
+    fn part(&self, n: usize, electrodes: [&Electrode; 2], level: [i32; 2]) -> Part {
+        let n = n & 1;
+        let (own, other) = (electrodes[n], electrodes[1 - n]);
+        let Some(uv) = own.uv.filter(|&uv| uv >= self.works_uv[n]) else { return Part::Rest };
+        let share = (level_of(uv) - self.rest[n]).min(self.span[n]);
+        let expected = share * self.other[n] / self.span[n].max(1);
+        match 16 * (level[1 - n] - self.rest[1 - n]) {
+            _ if other.uv.is_none() || self.other[n] < HEARS_AT_ALL => Part::Unknown,
+            rise if rise < UNHEARD[n] * expected => Part::Unheard,
+            // A doubted electrode vouches for nothing.
+            rise if rise >= HEARD * expected && !other.doubted => Part::Heard,
+            _ => Part::Unknown,
+        }
+    }
 }
 
 #[derive(Clone, Debug)]
@@ -148,6 +164,7 @@ struct Machine {
     /// Shares of both sites and the place, Q4.
     mean: [i32; 3],
     was_lone: bool,
+    parts: [Part; 2],
     crest: i32,
     trough: [i32; 2],
     /// Offset of rest, uV, Q8.
@@ -165,18 +182,20 @@ impl Decide {
         Self { sites: model.map(|model| Sites::of(fitted, model)), machine: Machine::new(fitted) }
     }
 
-    /// Envelopes, uV, at which electrode 0 (flexor) or 1 (extensor) becomes active and ceases to be.
-    pub fn active_uv(&self, electrode: usize) -> [i32; 2] {
-        self.sites
-            .as_ref()
-            .map_or(ACTIVE_UV, |sites| sites.active_uv[usize::from(sites.electrode[1] == electrode)])
+    /// Site (0 closes, 1 opens) of electrode 0 (flexor) or 1 (extensor), or the other way round.
+    pub fn site_of(&self, electrode: usize) -> usize {
+        // `& 1` lets the compiler drop the bounds check, here and below.
+        self.sites.as_ref().map_or(electrode, |sites| sites.electrode[electrode & 1]) & 1
     }
 
-    /// Electrode of the present wish, 0 (flexor) or 1 (extensor); at rest, the opening one.
+    /// Envelopes, uV, at which an electrode becomes active and ceases to be.
+    pub fn active_uv(&self, electrode: usize) -> [i32; 2] {
+        self.sites.as_ref().map_or(ACTIVE_UV, |sites| sites.active_uv[self.site_of(electrode)])
+    }
+
+    /// Electrode of the present wish; at rest, the opening one.
     pub fn mover(&self) -> usize {
-        let site = self.machine.site();
-        // `& 1` lets the compiler drop the bounds check, here and below.
-        self.sites.as_ref().map_or(site, |sites| sites.electrode[site]) & 1
+        self.site_of(self.machine.site())
     }
 
     /// Rest level and least rise of the other electrode, Q10 octaves; None if contractions hardly raise it.
@@ -188,42 +207,29 @@ impl Decide {
         }
     }
 
-    /// Electrode 0 (flexor) or 1 (extensor) is the closing one.
-    pub fn closes(&self, electrode: usize) -> bool {
-        self.sites.as_ref().map_or(0, |sites| sites.electrode[0]) == electrode
+    /// By site.
+    pub const fn parts(&self) -> [Part; 2] {
+        self.machine.parts
     }
 
-    pub fn part(&self, electrode: usize, electrodes: &[Electrode; 2]) -> Part {
-        let Some(own) = electrodes[electrode & 1].uv else { return Part::Rest };
-        let Some(sites) = &self.sites else {
-            return if own < ACTIVE_UV[0] { Part::Rest } else { Part::Unknown };
-        };
-        let n = usize::from(sites.electrode[1] == electrode);
-        if own < sites.works_uv[n] {
-            return Part::Rest;
-        }
-        match electrodes[(1 - electrode) & 1].uv {
-            Some(other) if sites.other[n] >= HEARS_AT_ALL => {
-                let share = (level_of(own) - sites.rest[n]).min(sites.span[n]);
-                let expected = share * sites.other[n] / sites.span[n].max(1);
-                let rise = level_of(other - (self.machine.drift[1 - n] >> 8)) - sites.rest[1 - n];
-                match 16 * rise {
-                    rise if rise < UNHEARD[n] * expected => Part::Unheard,
-                    rise if rise >= HEARD * expected => Part::Heard,
-                    _ => Part::Unknown,
-                }
-            }
-            _ => Part::Unknown,
-        }
+    /// The opening electrode has more than a closing gives it.
+    pub fn outweighs(&self) -> bool {
+        self.sites.as_ref().is_none_or(|sites| self.machine.mean[1] / 16 >= sites.beside)
     }
 
     pub fn strength_permille(&self) -> u16 {
-        self.machine.strength_permille()
+        let Machine { fitted: f, wish, mean, .. } = &self.machine;
+        if *wish == Wish::Rest {
+            return 0;
+        }
+        let site = self.machine.site();
+        let above = mean[site] / 16 - f.ends[site];
+        (above.min(STRONG - f.ends[site]).max(0) * 1_000 / (STRONG - f.ends[site]).max(1)) as u16
     }
 
     pub fn take(&mut self, electrodes: &[Electrode; 2]) -> Wish {
         match &self.sites {
-            Some(sites) => self.machine.calibrated(sites, sites.electrode.map(|n| electrodes[n & 1])),
+            Some(sites) => self.machine.calibrated(sites, sites.electrode.map(|n| &electrodes[n & 1])),
             None => self.machine.uncalibrated(electrodes),
         }
         self.machine.wish
@@ -241,6 +247,7 @@ impl Machine {
             calm: 0,
             mean: [0; 3],
             was_lone: false,
+            parts: [Part::Rest; 2],
             crest: 0,
             trough: [0; 2],
             drift: [0; 2],
@@ -252,25 +259,18 @@ impl Machine {
         usize::from(self.wish != Wish::Close)
     }
 
-    fn strength_permille(&self) -> u16 {
-        if self.wish == Wish::Rest {
-            return 0;
-        }
-        let (f, site) = (self.fitted, self.site());
-        let above = self.mean[site] / 16 - f.ends[site];
-        (above.min(STRONG - f.ends[site]).max(0) * 1_000 / (STRONG - f.ends[site]).max(1)) as u16
-    }
-
-    fn calibrated(&mut self, sites: &Sites, electrodes: [Electrode; 2]) {
+    fn calibrated(&mut self, sites: &Sites, electrodes: [&Electrode; 2]) {
         let f = self.fitted;
         let over = electrodes[1].over;
         // `max(1)`, far below any span or turn, rules a division by zero out.
         let mut blind = electrodes.map(|electrode| electrode.uv.is_none() || electrode.doubted);
+        let mut level = [0, 1]
+            .map(|n: usize| electrodes[n].uv.map_or(sites.rest[n], |uv| level_of(uv - (self.drift[n] >> 8))));
+        self.parts = [0, 1].map(|n: usize| sites.part(n, electrodes, level));
         blind[0] |= electrodes[0].lone;
-        let level = [0, 1].map(|n: usize| {
-            let known = electrodes[n].uv.filter(|_| n == 1 || !blind[0]);
-            known.map_or(sites.rest[n], |uv| level_of(uv - (self.drift[n] >> 8)))
-        });
+        if blind[0] {
+            level[0] = sites.rest[0];
+        }
         let share = [0, 1].map(|n: usize| (level[n] - sites.rest[n]) * 1_000 / sites.span[n].max(1));
         let place = (level[1] - level[0] - sites.close_ratio) * 1_000 / sites.turn.max(1);
         let now = [share[0].min(1_300), share[1].min(1_300), place.clamp(-1_000, 2_000)];
@@ -286,14 +286,14 @@ impl Machine {
         }
         self.was_lone = electrodes[0].lone;
         let wish = self.wanted(sites, blind, over);
+        self.settle(wish);
         // A doubted closing electrode says nothing about the ratio.
         let lately = !blind[0] && self.since[0] < f.after_frames[0];
         let strong = level[1] - sites.rest[1] - sites.span[1] >= if lately { f.firmer } else { 0 };
-        let alone = share[0] < sites.both[1] + f.both || electrodes[0].still;
-        let rises = !electrodes[0].lone || share[1] >= self.trough[1] + f.rise;
-        let apart = (place >= f.place_begins && alone || blind[0]) && rises;
-        self.settle(wish);
-        if apart && strong && !over && self.wish != Wish::Open {
+        let alone = || share[0] < sites.both[1] + f.both || electrodes[0].still;
+        let rises = || !electrodes[0].lone || share[1] >= self.trough[1] + f.rise;
+        let apart = || (blind[0] || place >= f.place_begins && alone()) && rises();
+        if strong && !over && self.wish != Wish::Open && apart() {
             (self.wish, self.next, self.stands) = (Wish::Open, Wish::Open, 0);
             self.mean = now.map(|value| value * 16);
         }
@@ -302,12 +302,8 @@ impl Machine {
 
     fn wanted(&mut self, sites: &Sites, blind: [bool; 2], over: bool) -> Wish {
         let f = self.fitted;
-        let [closes, opens, place] = self.mean.map(|mean| mean / 16);
-        let own = match self.wish {
-            Wish::Rest => None,
-            Wish::Close => Some(0),
-            Wish::Open => Some(1),
-        };
+        let [closes, opens, place] = self.mean.map(|mean| mean >> 4);
+        let own = (self.wish != Wish::Rest).then(|| self.site());
         for (n, share) in [closes, opens].into_iter().enumerate() {
             if own == Some(n) {
                 self.crest =
@@ -319,9 +315,8 @@ impl Machine {
         if own.is_none() {
             self.crest = 0;
         }
-        let ends = |n: usize| sites.ends[n].max(self.crest / 256 - sites.fall[n]);
-        let beside = [0, if blind[0] { sites.beside } else { 0 }];
-        let begins = |n: usize| sites.begins[n].max(self.trough[n] + f.rise).max(beside[n]);
+        let ends = |n: usize| sites.ends[n].max((self.crest >> 8) - sites.fall[n]);
+        let begins = |n: usize| sites.begins[n].max(self.trough[n] + f.rise);
         let busy = !blind[0] && place < f.place_begins && (closes >= f.busy || opens >= f.busy);
         self.since[0] = if busy { 0 } else { self.since[0].saturating_add(1) };
         self.since[1] = if self.wish == Wish::Open { 0 } else { self.since[1].saturating_add(1) };
@@ -367,14 +362,14 @@ impl Machine {
         }
     }
 
-    fn follow(&mut self, sites: &Sites, electrodes: [Electrode; 2], wish: Wish) {
+    fn follow(&mut self, sites: &Sites, electrodes: [&Electrode; 2], wish: Wish) {
         let f = self.fitted;
         let calm = self.wish == Wish::Rest
             && wish == Wish::Rest
             && self.mean[0] < 16 * f.ends[0]
             && self.mean[1] < 16 * f.ends[1];
         self.calm = if calm { self.calm.saturating_add(1) } else { 0 };
-        for (n, Electrode { uv, hums, .. }) in electrodes.into_iter().enumerate() {
+        for (n, &Electrode { uv, hums, .. }) in electrodes.into_iter().enumerate() {
             let Some(uv) = uv else { continue };
             let added = (uv - sites.rest_uv[n]).min(MOST_DRIFT_UV) * 256;
             if hums {
@@ -385,7 +380,7 @@ impl Machine {
                 self.drift[n] += (added - self.drift[n]) / frames;
             }
             // What was added is no more than what is there; hum is constant, so what falls below it is none.
-            if uv < self.hum_uv[n] - self.hum_uv[n] / HUM_PART {
+            if uv < self.hum_uv[n] - (self.hum_uv[n] >> HUM_SHIFT) {
                 (self.drift[n], self.hum_uv[n]) = (0, 0);
             } else if added < self.drift[n] && self.drift[n] > 0 {
                 self.drift[n] += (added.max(0) - self.drift[n]) / 8;
@@ -394,6 +389,10 @@ impl Machine {
     }
 
     fn uncalibrated(&mut self, electrodes: &[Electrode; 2]) {
+        self.parts = electrodes.map(|electrode| match electrode.uv {
+            Some(uv) if uv >= ACTIVE_UV[0] => Part::Unknown,
+            _ => Part::Rest,
+        });
         let mut level = electrodes.map(|electrode| electrode.uv.map(level_of));
         level[0] = level[0].filter(|_| !electrodes[0].lone);
         let is_over = electrodes[1].over;

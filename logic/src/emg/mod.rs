@@ -190,9 +190,9 @@ impl Emg {
         let mover = self.decide.mover();
         let raised = self.channels.each_ref().map(|channel| channel.raised);
         self.lone = self.proof.lone(levels, raised);
-        for (n, channel) in self.channels.iter_mut().enumerate() {
-            let part = self.decide.part(n, &self.electrodes);
-            channel.trust.weigh(part, self.decide.closes(n), wish == Wish::Rest || mover == n);
+        for (site, part) in self.decide.parts().into_iter().enumerate() {
+            let n = self.decide.site_of(site);
+            self.channels[n].trust.weigh(part, site == 0, wish == Wish::Rest || mover == n);
         }
         let other = &self.electrodes[1 - mover];
         if wish != self.verdict.wish {
@@ -200,10 +200,13 @@ impl Emg {
             self.beside_lone = other.quality() == Quality::Endless && own.is_fresh();
         }
         // A deaf electrode can prove nothing, and disprove nothing.
-        let deaf = other.uv.is_none() || other.hums || self.beside_lone && other.lone;
+        let lone = self.beside_lone && other.lone;
+        let deaf = other.uv.is_none() || other.hums || lone;
         let hears = self.decide.hears().filter(|_| !deaf);
         let trust = &self.channels[mover].trust;
-        let proven = self.proof.take(levels, wish, mover, trust, hears, raised[mover]) && !self.lone[mover];
+        let proven = self.proof.take(levels, wish, mover, trust, hears, raised[mover])
+            && !self.lone[mover]
+            && !(lone && wish == Wish::Open && !self.decide.outweighs());
         let [flexor, extensor] = &self.channels;
         self.verdict = Verdict {
             wish,

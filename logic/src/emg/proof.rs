@@ -31,16 +31,16 @@ const GOES_ON_FRAMES: u16 = 8;
 const OVER_FRAMES: u16 = 40;
 /// Slow frames after a doubt within which an opening may have begun during it: 0.5 s.
 const RETURNED_FRAMES: u8 = 40;
-/// Each unproven opening makes the next harder to believe, three times at most; 10 s of rest take one back.
-const MOST_WARY: u8 = 3;
+/// Slow frames of rest that take back what an unproven opening adds: it makes the next harder to believe, three times at most.
 const WARY_FRAMES: u16 = 800;
 /// Rise and fall of a swing, Q10 octaves; swings that the other electrode does not hear, within 3 s.
 const SWING: i32 = 1_024;
 const LONE_SWINGS: u8 = 2;
 const SWING_FRAMES: u16 = 240;
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Swings {
+    /// 0: none.
     low: i32,
     high: Option<i32>,
     was_active: bool,
@@ -49,19 +49,13 @@ struct Swings {
     since: u16,
 }
 
-impl Default for Swings {
-    fn default() -> Self {
-        Self { low: i32::MAX, high: None, was_active: false, other: [0; 2], lone: 0, since: 0 }
-    }
-}
-
 impl Swings {
     /// Levels of both electrodes in a slow frame. True if this one swings alone.
     #[inline(never)]
     fn take(&mut self, level: i32, other: i32, is_active: bool) -> bool {
-        self.since = self.since.saturating_add(1);
+        self.since += u16::from(self.lone > 0);
         if self.since > SWING_FRAMES {
-            self.lone = 0;
+            (self.lone, self.since) = (0, 0);
         }
         self.other[1] = self.other[1].max(other);
         match self.high {
@@ -77,7 +71,7 @@ impl Swings {
                 self.high = Some(high.max(level));
                 self.was_active |= is_active;
             }
-            None if level <= self.low => (self.low, self.other) = (level, [other; 2]),
+            None if level <= self.low || self.low == 0 => (self.low, self.other) = (level, [other; 2]),
             None if level >= self.low + SWING => (self.high, self.was_active) = (Some(level), is_active),
             None => {}
         }
@@ -103,8 +97,7 @@ pub struct Proof {
     proven: bool,
     over: u16,
     last: (Wish, u16),
-    wary: u8,
-    rest: u16,
+    wary: u16,
     swings: [Swings; 2],
     /// Slow frames for which the mover's last doubt counts, and the other electrode's lowest level since it began.
     returned: u8,
@@ -145,7 +138,7 @@ impl Proof {
                 _ => self.mean_rise(other, rest),
             };
             self.at_once |= self.returned == 0 && self.age <= AT_ONCE_FRAMES && rise >= 2 * least;
-            rise >= least * (1 + i32::from(self.wary))
+            rise >= least * (1 + i32::from(self.wary.div_ceil(WARY_FRAMES)))
         });
         self.hears = if heard == Some(true) { self.hears.saturating_add(1) } else { 0 };
         self.heard |= self.age <= HEARD_FRAMES && self.hears >= HEARD_FOR[usize::from(wish == Wish::Open)];
@@ -169,9 +162,6 @@ impl Proof {
             }
         }
         self.proven &= !trust.is_straight() && (wish == Wish::Open || !trust.is_deaf());
-        if self.proven {
-            self.wary = 0;
-        }
         self.proven
     }
 
@@ -182,11 +172,8 @@ impl Proof {
     }
 
     fn keep(&mut self, levels: [Option<i32>; 2]) {
-        self.frames += 1;
-        let next = self.frames >= BLOCK_FRAMES;
-        if next {
-            self.frames = 0;
-        }
+        self.frames = (self.frames + 1) % BLOCK_FRAMES;
+        let next = self.frames == 0;
         for ((blocks, means), level) in self.blocks.iter_mut().zip(&mut self.means).zip(levels) {
             if next {
                 // `rotate_left` pulls in memmove.
@@ -195,8 +182,7 @@ impl Proof {
                     means[n - 1] = means[n];
                 }
             }
-            let Some(level) = level else { continue };
-            let level = level as i16;
+            let Some(level) = level.map(|level| level as i16) else { continue };
             let last = &mut blocks[BLOCKS - 1];
             *last = if next { level } else { level.max(*last) };
             if means[0] == 0 {
@@ -218,23 +204,20 @@ impl Proof {
     }
 
     fn begin(&mut self, wish: Wish) {
-        self.last.1 = if self.proven { 0 } else { self.last.1.saturating_add(1) };
         if self.proven {
-            self.last.0 = self.wish;
+            (self.last, self.wary) = ((self.wish, 0), 0);
+        } else {
+            self.last.1 = self.last.1.saturating_add(1);
         }
         if wish == self.wish {
-            self.rest = if wish == Wish::Rest { self.rest + 1 } else { 0 };
-            if self.rest >= WARY_FRAMES {
-                (self.rest, self.wary) = (0, self.wary.saturating_sub(1));
-            }
+            self.wary = self.wary.saturating_sub(u16::from(wish == Wish::Rest));
             return;
         }
         if self.wish == Wish::Open && !self.proven {
-            self.wary = (self.wary + 1).min(MOST_WARY);
+            self.wary = (self.wary + WARY_FRAMES).min(3 * WARY_FRAMES);
         }
         (self.wish, self.age, self.over) = (wish, 0, 0);
         self.before = [0, 1].map(|n: usize| self.before(n));
-        // Not for rest, which is never proven.
         self.heard = wish == self.last.0 && self.last.1 < GOES_ON_FRAMES;
         self.apart = self.heard;
         (self.at_once, self.proven) = (false, false);
@@ -262,7 +245,7 @@ impl Proof {
     /// Both rise, out of proportion: a signal that reaches both at once rises in proportion, or jumps.
     #[inline(never)]
     fn rise_apart(&self) -> bool {
-        let low = self.blocks.map(least);
+        let low = self.blocks.map(|blocks| blocks.into_iter().min().map_or(0, i32::from));
         let most = [0, 1].map(|n: usize| {
             climbs(low[n], self.blocks[n].iter().fold(0, |most, &level| most.max(level.into()))) >> 3
         });
@@ -293,11 +276,6 @@ impl Proof {
             && slows
             && !is_top
     }
-}
-
-#[inline(never)]
-fn least(blocks: [i16; BLOCKS]) -> i32 {
-    blocks.into_iter().fold(i32::from(i16::MAX), |least, level| least.min(level.into()))
 }
 
 /// Rise between two levels as a part of the range, Q18; 0 if it falls.

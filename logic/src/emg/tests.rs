@@ -206,7 +206,7 @@ fn an_electrode_that_swings_and_is_not_heard_is_doubted() {
 
 // Shows W5.
 #[test]
-fn a_restless_flexor_is_told_within_5_s_is_never_proven_and_hides_no_opening() {
+fn a_restless_electrode_is_told_within_5_s_is_never_proven_and_hides_no_opening() {
     let levels =
         [0.3, 0.6, 1.0].into_iter().flat_map(|share| [0.0, 0.02, 0.05, 0.1].map(|ripple| (share, ripple)));
     for (share, ripple, hz) in
@@ -227,6 +227,13 @@ fn a_restless_flexor_is_told_within_5_s_is_never_proven_and_hides_no_opening() {
         assert!(opening.iter().any(|v| v.proven), "{share} {ripple} {hz}");
         run(&mut emg, 2.0, rest);
         assert_eq!(emg.quality(0), Quality::Good);
+
+        let mv = 80.0 * (1_430.0f64 / 80.0).powf(share) - 30.0;
+        let mut emg = wearer();
+        run(&mut emg, 2.0, rest);
+        let alone = run(&mut emg, 5.0, |t| [rest(t)[0], mv * (1.0 + ripple * (TAU * hz * t).sin())]);
+        assert!(alone.iter().all(|v| !v.proven && v.wish != Wish::Close), "{share} {ripple} {hz}");
+        assert_ne!(emg.quality(1), Quality::Good, "{share} {ripple} {hz}");
     }
 }
 

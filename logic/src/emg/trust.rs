@@ -15,20 +15,21 @@ const STILL_UV: i32 = 1_500;
 /// Slow frames of a constant envelope that is doubted: 1 s. Sound recordings have 0.77 s at most.
 const FLAT_FRAMES: u16 = 80;
 /// Hum varies by less than 1/16 of its level.
-pub const HUM_PART: i32 = 16;
+pub const HUM_SHIFT: u32 = 4;
 /// Slow frames of rise without a fall of 3 %: 2.5 s. Sound recordings have 2 s at most.
 const CREEP_FRAMES: u16 = 200;
 /// Slow frames at the top of the range: 1.5 s. Recordings have 0.35 s.
 const TOP_FRAMES: u16 = 120;
 /// Slow frames of activity without a pause: 60 s. One person has tone for more than 30 s.
 const ENDLESS_FRAMES: u16 = 4_800;
-/// Slow frames in which the other electrode takes no part, 2.4 s; of activity within a narrow band, 4.5 s, or 6.7 s
-/// if the other electrode takes part. Twice as many on the opening electrode, which opens by little without a proof.
-const UNHEARD_FRAMES: u16 = 190;
-const NARROW_THIRDS: u16 = 1_080;
-const FRESH_THIRDS: u16 = 3 * 80;
-/// Slow frames without the other electrode's part in all after which this one hides no opening: 0.75 s.
-const LONE_FRAMES: u16 = 60;
+/// Evidence against a muscle a slow frame of activity, by the other electrode's [`Part`], closing and opening: enough in 2.4 to 5.6 s.
+const AGAINST: [[u16; 4]; 2] = [[0, 7, 4, 3], [0, 5, 4, 0]];
+const ENOUGH: u16 = 1_344;
+const REST_TAKES: u16 = 40;
+/// Evidence below which the band was wide, or at rest, within the last second.
+const FRESH: u16 = 560;
+/// Slow frames in a row without the other electrode's part after which this one hides no opening: 0.75 s.
+const LONE_FRAMES: i8 = -60;
 /// Slow frames in a row without and with its part that end and make the proof of a closing: 0.2 s, 0.38 s.
 const DEAF_FRAMES: i8 = -16;
 const JOINED_FRAMES: i8 = 30;
@@ -62,26 +63,6 @@ pub enum Quality {
     Saturated,
 }
 
-impl Quality {
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Good => "good",
-            Self::LeadOff => "no contact",
-            Self::Hum => "mains hum",
-            Self::Creep => "creep",
-            Self::Flat => "stands still",
-            Self::Endless => "endless activity",
-            Self::Saturated => "saturated",
-        }
-    }
-}
-
-impl core::fmt::Display for Quality {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str(self.name())
-    }
-}
-
 #[derive(Clone, Debug, Default)]
 pub struct Trust {
     quality: Quality,
@@ -99,19 +80,18 @@ pub struct Trust {
     crest_uv: i32,
     climbing: u16,
     at_top: u16,
-    unheard: u16,
-    /// Thirds of slow frames, and a crest, or the trough after it, uV.
-    narrow: u16,
+    evidence: u16,
+    /// A crest, or the trough after it, uV.
     band_uv: [i32; 2],
     /// The band was wide within the last second.
     lively: bool,
+    lone: bool,
     /// Slow frames in a row with the other electrode's part, or negative, without it.
     run: i8,
     /// Proofs of this contraction, two at most, and slow frames since the last.
     proofs: u8,
     since_proof: u16,
     window: Vec<i16, WINDOW>,
-    kept: bool,
     mains: bool,
 }
 
@@ -127,9 +107,6 @@ impl Trust {
             return self.last_uv();
         };
         (self.missing, self.last_uv) = (0, uv);
-        if !self.kept {
-            self.kept = self.window.push((uv / UNIT_UV).clamp(-32_768, 32_767) as i16).is_ok();
-        }
         Some(uv)
     }
 
@@ -138,7 +115,8 @@ impl Trust {
     }
 
     pub fn judge(&mut self, active_uv: i32, uv: i32) {
-        self.kept = false;
+        // A full window waits for its spectrum.
+        let _full = self.window.push((self.last_uv / UNIT_UV).clamp(-32_768, 32_767) as i16);
         let place = usize::from(self.place) % (2 * LAG);
         let (middle, far) = (self.past_uv[(place + LAG) % (2 * LAG)], self.past_uv[place]);
         let curve_uv = (uv - 2 * middle + far).abs();
@@ -151,7 +129,7 @@ impl Trust {
         self.at_top = if is_top { self.at_top.saturating_add(1) } else { 0 };
         self.stand(uv);
         let turned = self.climb(uv);
-        let curves = curve_uv > uv.max(1) / PROOF_PART && !is_top && uv.max(middle).max(far) < TOP_UV;
+        let curves = curve_uv * PROOF_PART > uv.max(1) && !is_top && uv.max(middle).max(far) < TOP_UV;
         // A fall by half in 50 ms is an electrode that has come off, or back on.
         self.prove((turned || curves) && uv >= middle / 2);
 
@@ -188,22 +166,18 @@ impl Trust {
             _ => 0,
         };
         if part == Part::Rest {
-            self.unheard = self.unheard.saturating_sub(10);
-            self.narrow = self.narrow.saturating_sub(30);
-            (self.band_uv, self.lively) = ([0, i32::MAX], false);
+            self.evidence = self.evidence.saturating_sub(REST_TAKES);
+            (self.band_uv, self.lively, self.lone) = ([0, i32::MAX], false, false);
             return;
         }
-        let longer = if closes { 1 } else { 2 };
-        if self.unheard >= longer * UNHEARD_FRAMES || self.narrow >= longer * NARROW_THIRDS {
+        if self.evidence >= ENOUGH {
             self.lose(Quality::Endless);
             return;
         }
-        match part {
-            Part::Unheard => self.unheard += 1,
-            Part::Heard if counts => self.unheard = self.unheard.saturating_sub(2),
-            _ => {}
+        if self.is_good() {
+            self.evidence += AGAINST[usize::from(!closes)][part as usize & 3];
         }
-        self.narrow += if part == Part::Heard { 2 } else { 3 };
+        self.lone = self.run <= LONE_FRAMES || self.lone && !(counts && self.run >= JOINED_FRAMES);
         self.lively &= self.is_fresh();
         self.wander(self.last_uv);
     }
@@ -211,22 +185,22 @@ impl Trust {
     fn wander(&mut self, uv: i32) {
         let [crest, trough] = &mut self.band_uv;
         *trough = (*trough).min(uv);
-        if *trough >= *crest - *crest / 32 * FALLS {
+        if *trough >= *crest - (*crest >> 5) * FALLS {
             (*crest, *trough) = ((*crest).max(uv), i32::MAX);
-        } else if uv > *trough + *trough / 32 * RISES {
-            (self.unheard, self.narrow, self.lively) = (0, 0, true);
+        } else if uv > *trough + (*trough >> 5) * RISES {
+            (self.evidence, self.run, self.lively, self.lone) = (0, 0, true, false);
             self.band_uv = [uv, i32::MAX];
         }
     }
 
     /// Active without the other electrode.
     pub const fn is_lone(&self) -> bool {
-        self.unheard >= LONE_FRAMES || matches!(self.quality, Quality::Endless)
+        self.lone || matches!(self.quality, Quality::Endless)
     }
 
     /// At rest, or out of a narrow band, within the last second.
     pub const fn is_fresh(&self) -> bool {
-        self.narrow < FRESH_THIRDS
+        self.evidence < FRESH
     }
 
     /// The other electrode has taken its part for long enough to prove a closing.
@@ -248,34 +222,31 @@ impl Trust {
 
     fn prove(&mut self, turns: bool) {
         self.since_proof = self.since_proof.saturating_add(1);
-        if self.active_for < FIRST_PROOF_FRAMES || self.since_proof > PROOF_LASTS {
+        let is_late = self.active_for >= FIRST_PROOF_FRAMES;
+        if !is_late || self.since_proof > PROOF_LASTS {
             self.proofs = 0;
         }
-        if turns
-            && self.active_for >= FIRST_PROOF_FRAMES
-            && (self.proofs == 0 || self.since_proof >= PROOF_APART)
-        {
-            self.proofs = (self.proofs + 1).min(2);
-            self.since_proof = 0;
+        if turns && is_late && (self.proofs == 0 || self.since_proof >= PROOF_APART) {
+            (self.proofs, self.since_proof) = ((self.proofs + 1).min(2), 0);
         }
     }
 
     fn stand(&mut self, uv: i32) {
-        if (uv - self.anchor_uv).abs() > self.anchor_uv / 100 + STILL_UV {
+        if (uv - self.anchor_uv).abs() * 100 > self.anchor_uv + 100 * STILL_UV {
             (self.anchor_uv, self.flat) = (uv, 0);
         } else if uv < TOP_UV {
             self.flat = self.flat.saturating_add(1);
         }
         if self.flat >= FLAT_FRAMES {
             self.hum_uv = self.anchor_uv;
-        } else if (uv - self.hum_uv).abs() > self.hum_uv / HUM_PART + STILL_UV {
+        } else if (uv - self.hum_uv).abs() > (self.hum_uv >> HUM_SHIFT) + STILL_UV {
             // A level that comes back there may be a muscle's, until it is constant again.
             self.hum_uv = 0;
         }
     }
 
     fn climb(&mut self, uv: i32) -> bool {
-        let turned = self.active_for > 0 && uv < self.crest_uv - self.crest_uv / 32 - STILL_UV;
+        let turned = self.active_for > 0 && uv < self.crest_uv - (self.crest_uv >> 5) - STILL_UV;
         if self.active_for == 0 || uv >= TOP_UV || turned {
             (self.crest_uv, self.climbing) = (uv, 0);
         } else {
@@ -315,7 +286,7 @@ impl Trust {
     }
 
     pub fn hums_at(&self, uv: i32) -> bool {
-        self.is_constant() && (uv - self.hum_uv).abs() <= self.hum_uv / HUM_PART + STILL_UV
+        self.is_constant() && (uv - self.hum_uv).abs() <= (self.hum_uv >> HUM_SHIFT) + STILL_UV
     }
 
     /// One proof within the last second: the envelope fell back by 3 % or curved.

@@ -89,7 +89,7 @@ impl Fingertip {
                 Grip::Holds(_) => Err(Refusal::Loaded),
                 Grip::Unknown => Err(Refusal::SensorLost),
                 Grip::Unloaded => {
-                    self.senses.muscles_mut().begin_calibration(self.journal.frame());
+                    self.senses.muscles_mut().begin_calibration(self.journal.frame(), false);
                     Ok(())
                 }
             },

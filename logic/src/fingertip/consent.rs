@@ -79,7 +79,7 @@ impl Fingertip {
                 gate.release(false);
                 self.senses.muscles_mut().give_up(CalibrationRefusal::Stopped, &mut self.journal);
             }
-            Some(Press::Calibrate) => self.senses.muscles_mut().begin_calibration(self.journal.frame()),
+            Some(Press::Calibrate) => self.senses.muscles_mut().begin_calibration(self.journal.frame(), true),
             None => {}
         }
     }

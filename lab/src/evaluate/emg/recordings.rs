@@ -17,6 +17,9 @@ pub(super) const HZ: f64 = 100.0;
 /// Readings of a pair in a slow frame of 12.5 ms, s after its begin, and pairs a second.
 const AT_S: [f64; 3] = [0.005, 0.008, 0.011];
 pub(super) const PAIRS_HZ: f64 = 240.0;
+/// A short calibration: rest before, and between two contractions, and a contraction from its label's start, s.
+const DON_REST_S: [f64; 2] = [2.0, 0.4];
+const DON_S: f64 = 1.5;
 /// uV of a count.
 const UV: f64 = 2.8e6 / 32_767.0;
 pub(super) const REST: u8 = 1;
@@ -149,21 +152,8 @@ impl Recording {
 
     /// Calibrates as the hand does: each prompt is answered with what is given, over and over for its 5 s.
     pub(super) fn calibrate(&self, sites: [usize; 2]) -> Result<EmgModel, CalibrationRefusal> {
-        let unrest = |rows: &Range<usize>| -> f64 {
-            let pairs = self.pairs(rows.clone(), sites);
-            let of_site = |n: usize| {
-                let levels = || pairs.iter().map(|(_, uv)| f64::from(level_of(uv[n])));
-                let mean = levels().sum::<f64>() / pairs.len() as f64;
-                let variance = levels().map(|level| (level - mean).powi(2)).sum::<f64>() / pairs.len() as f64;
-                mean + variance.sqrt()
-            };
-            of_site(0) + of_site(1)
-        };
-        let rests = self.rests();
-        let rests = rests.iter().filter(|rows| rows.len() >= 50).take(4);
-        let quietest = rests.min_by(|a, b| unrest(a).total_cmp(&unrest(b))).cloned();
         let held = |label: u8| -> Vec<Range<usize>> { self.shown(label).collect() };
-        let phases = [quietest.into_iter().collect(), held(CLOSE), held(OPEN)];
+        let phases = [self.quietest(sites).into_iter().collect(), held(CLOSE), held(OPEN)];
         let phases =
             phases.map(|rows| rows.into_iter().flat_map(|rows| self.pairs(rows, sites)).collect::<Vec<_>>());
         let mut calibration = Calibration::begin(0);
@@ -178,6 +168,48 @@ impl Recording {
             }
         }
         unreachable!("it ends by itself")
+    }
+
+    /// Calibrates at the hand: rest, then three times the begin of a closing and of an opening, with rest between.
+    pub(super) fn don(&self, sites: [usize; 2], kept: &EmgModel) -> Result<EmgModel, CalibrationRefusal> {
+        let rest: Vec<_> =
+            self.quietest(sites).into_iter().flat_map(|rows| self.pairs(rows, sites)).collect();
+        let rests = |seconds: f64| rest.iter().cycle().copied().take((seconds * PAIRS_HZ) as usize);
+        let mut readings: Vec<_> = rests(DON_REST_S[0]).collect();
+        for turn in 0..3 {
+            for label in [CLOSE, OPEN] {
+                let contractions = self.contractions(label);
+                let begin = contractions.get(turn % 2).map_or(0, |rows| rows.start);
+                readings.extend(self.pairs(begin..begin + (DON_S * HZ) as usize, sites));
+                readings.extend(rests(DON_REST_S[1]));
+            }
+        }
+        let mut calibration = Calibration::short(0, kept);
+        let frames = (0..).map(|n| n * 25 / 3);
+        for (frame, (_, uv)) in frames.zip(readings) {
+            calibration.take(frame, uv.map(Some));
+        }
+        match calibration.take(3 * PROMPT_FRAMES, [None; 2]) {
+            Progress::Done(result) => result,
+            Progress::Asks(..) => unreachable!("its time is over"),
+        }
+    }
+
+    /// Rows of the quietest of the first rests.
+    fn quietest(&self, sites: [usize; 2]) -> Option<Range<usize>> {
+        let unrest = |rows: &Range<usize>| -> f64 {
+            let pairs = self.pairs(rows.clone(), sites);
+            let of_site = |n: usize| {
+                let levels = || pairs.iter().map(|(_, uv)| f64::from(level_of(uv[n])));
+                let mean = levels().sum::<f64>() / pairs.len() as f64;
+                let variance = levels().map(|level| (level - mean).powi(2)).sum::<f64>() / pairs.len() as f64;
+                mean + variance.sqrt()
+            };
+            of_site(0) + of_site(1)
+        };
+        let rests = self.rests();
+        let rests = rests.iter().filter(|rows| rows.len() >= 50).take(4);
+        rests.min_by(|a, b| unrest(a).total_cmp(&unrest(b))).cloned()
     }
 
     /// The middles of a label's first two contractions, which a calibration sees.

@@ -16,6 +16,7 @@ pub(in crate::evaluate) enum Kind {
     SameSession,
     OtherPosture,
     FirstDayKept,
+    ShortDonning,
 }
 
 #[derive(Debug)]
@@ -65,7 +66,11 @@ impl Trial<'_> {
 
     pub fn counted(&self, said: &[Said]) -> Count {
         let mut count = Count::default();
-        count.add(self.recording, said, if self.kind == Kind::SameSession { 2 } else { 0 });
+        count.add(
+            self.recording,
+            said,
+            if matches!(self.kind, Kind::SameSession | Kind::ShortDonning) { 2 } else { 0 },
+        );
         count
     }
 }
@@ -75,12 +80,13 @@ pub(in crate::evaluate) struct Trials<'a> {
     pub all: Vec<Trial<'a>>,
     /// Calibrations that were refused, and why, by day.
     pub refused: BTreeMap<u32, String>,
+    pub not_donned: BTreeMap<u32, String>,
 }
 
 impl<'a> Trials<'a> {
     /// Calibrates as a wearer would: each day in the first posture, with the electrodes that separated best on the first day.
     pub fn of(days: &'a Days) -> Self {
-        let (mut all, mut refused) = (Vec::new(), BTreeMap::new());
+        let (mut all, mut refused, mut not_donned) = (Vec::new(), BTreeMap::new(), BTreeMap::new());
         let (mut sites, mut kept) = (None, None);
         for (&day, postures) in days {
             let Some((_, first)) = postures.first_key_value() else { continue };
@@ -99,9 +105,15 @@ impl<'a> Trials<'a> {
             }
             if let Some(Ok(model)) = kept {
                 all.push(Trial { kind: Kind::FirstDayKept, recording: first, sites, model });
+                match first.don(sites, &model) {
+                    Ok(model) => all.push(Trial { kind: Kind::ShortDonning, recording: first, sites, model }),
+                    Err(refusal) => {
+                        not_donned.insert(day, refusal.to_string());
+                    }
+                }
             }
             kept = kept.or(Some(own));
         }
-        Self { all, refused }
+        Self { all, refused, not_donned }
     }
 }

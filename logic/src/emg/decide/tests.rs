@@ -90,7 +90,6 @@ struct State {
     trough: [i32; 2],
     crest: i32,
     blind: [bool; 2],
-    beside: i32,
     over: bool,
 }
 
@@ -101,13 +100,12 @@ const CALM: State = State {
     trough: [0; 2],
     crest: 0,
     blind: [false; 2],
-    beside: 422,
     over: false,
 };
 
 fn asked(state: State) -> (Wish, Machine) {
-    let State { wish, mean, since, trough, crest, blind, beside, over } = state;
-    let sites = Sites { fall: [300; 2], beside, ..sites() };
+    let State { wish, mean, since, trough, crest, blind, over } = state;
+    let sites = Sites { fall: [300; 2], ..sites() };
     let mut machine =
         Machine { wish, mean: mean.map(|mean| mean * 16), since, trough, crest, ..Machine::new(&F) };
     (machine.wanted(&sites, blind, over), machine)
@@ -127,10 +125,7 @@ fn opening_begins_from_its_share_and_place_while_the_other_site_is_calm() {
         (State { mean: [419, 690, 480], ..opens }, true),
         (State { mean: [420, 690, 480], ..opens }, false),
         (State { blind: [false, true], ..opens }, false),
-        // Beside a doubted closing electrode: from its share, or above what a closing drives this electrode to.
         (State { blind: [true, false], ..opens }, true),
-        (State { blind: [true, false], beside: 700, ..opens }, false),
-        (State { blind: [true, false], beside: 700, mean: [0, 700, 480], ..opens }, true),
         // Soon after other activity: not yet, only strongly, like any other. This frame counts.
         (State { since: [78, 1_000], ..opens }, false),
         (State { since: [79, 1_000], ..opens }, true),
@@ -241,7 +236,7 @@ fn read(levels: [i32; 2], since: i32, of: impl Fn(&mut [Electrode; 2])) -> Machi
     let mut electrodes = levels.map(|level| Electrode { uv: Some(uv_of(level)), ..Electrode::default() });
     of(&mut electrodes);
     let mut machine = Machine { since: [since; 2], ..Machine::new(&F) };
-    machine.calibrated(&sites(), electrodes);
+    machine.calibrated(&sites(), electrodes.each_ref());
     machine
 }
 
@@ -277,7 +272,7 @@ fn what_is_above_all_that_was_calibrated_is_strong() {
     assert_eq!(read([15_600, 16_320], 1_000, none).mean, [0, 800, 1_211]);
     let mut hums = Machine { drift: [0, 20_000 << 8], since: [1_000; 2], ..Machine::new(&F) };
     let uv = [uv_of(15_600), uv_of(16_940) + 20_000].map(Some);
-    hums.calibrated(&sites(), uv.map(|uv| Electrode { uv, ..Electrode::default() }));
+    hums.calibrated(&sites(), uv.map(|uv| Electrode { uv, ..Electrode::default() }).each_ref());
     assert_eq!((hums.mean, hums.wish), (opened, Wish::Open));
 }
 
@@ -303,7 +298,7 @@ fn rest_is_followed_after_half_a_second_of_it_and_hum_at_once() {
         let mut machine = machine;
         let uv = [0, 1].map(|n: usize| Some(sites.rest_uv[n] + above[n]));
         let electrodes = uv.map(|uv| Electrode { uv, hums, ..Electrode::default() });
-        (0..frames).for_each(|_| machine.follow(&sites, electrodes, wish));
+        (0..frames).for_each(|_| machine.follow(&sites, electrodes.each_ref(), wish));
         machine.drift
     };
     let calm = || Machine::new(&F);
@@ -324,7 +319,7 @@ fn rest_is_followed_after_half_a_second_of_it_and_hum_at_once() {
         assert_eq!(follows(machine, above, Wish::Rest, false, lasts) != [0; 2], is_calm);
     }
     let mut lost = calm();
-    (0..lasts).for_each(|_| lost.follow(&sites, [Electrode::default(); 2], Wish::Rest));
+    (0..lasts).for_each(|_| lost.follow(&sites, [&Electrode::default(); 2], Wish::Rest));
     assert_eq!(lost.drift, [0; 2]);
 }
 
@@ -372,7 +367,9 @@ fn the_other_electrode_takes_part_as_calibrated_or_not() {
     let levels = [[15_600, 15_700], [18_600, 17_700], [16_600, 19_700], [100, 150]];
     let of = |decide: &Decide, electrode: usize, levels: [Option<i32>; 2]| {
         let uv = levels.map(|level| level.map(uv_of));
-        decide.part(electrode, &uv.map(|uv| Electrode { uv, ..Electrode::default() }))
+        let mut decide = decide.clone();
+        decide.take(&uv.map(|uv| Electrode { uv, ..Electrode::default() }));
+        decide.parts()[decide.site_of(electrode)]
     };
     let calibrated = Decide::with(&F, Some(&model(levels)));
     let far = |level: i32| Some(15_700 + level);
