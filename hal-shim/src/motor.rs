@@ -44,6 +44,14 @@ pub enum MotorDrive {
 }
 
 impl MotorDrive {
+    /// 0 to 1000.
+    pub const fn permille(self) -> u16 {
+        match self {
+            Self::Close(duty) | Self::Open(duty) => duty.as_per_mille(),
+            Self::Coast => 0,
+        }
+    }
+
     pub const fn opens(self) -> bool {
         matches!(self, Self::Open(_))
     }

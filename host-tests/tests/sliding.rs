@@ -1,7 +1,6 @@
 //! Steady sliding far below S1: heard above each film's own floor, answered with small pulses, as long as they help.
 
 use tenax_hal_shim::detector::DetectorId;
-use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::words::Cause;
 use tenax_host_tests::{Bench, closed_mm, set};
 use tenax_logic::setting::SettingId;
@@ -11,16 +10,20 @@ const RUBS_MV: f64 = 35.0;
 const LOAD_N: f64 = 4.0;
 
 #[test]
-fn an_object_that_rubs_quietly_is_held_more_firmly_with_small_pulses() {
+fn a_quiet_slip_is_answered_within_two_readings_and_an_object_that_is_held_refutes_it() {
     let mut bench = Bench::holding(61);
     bench.run(2_000);
     assert_eq!(bench.by_reflex(), 0);
     bench.vibration_mv = RUBS_MV;
-    let drives = bench.run(2_000);
-    assert_eq!(bench.causes().last(), Some(&Cause::PulseOver));
-    assert!(bench.causes().contains(&Cause::Incipient(DetectorId::S1)));
-    let fast = |drive: &MotorDrive| matches!(drive, MotorDrive::Close(duty) if duty.as_per_mille() > 500);
-    assert!(!drives.iter().any(fast), "no pulse at full speed");
+    bench.run(100);
+    assert!(bench.causes().contains(&Cause::Slip(DetectorId::S1)), "{:?}", bench.causes());
+    let mut load_n = LOAD_N;
+    for _ in 0..4_000 {
+        // Held: shear stays as it is.
+        bench.load(load_n, 0.15 * LOAD_N);
+        load_n += closed_mm(bench.step());
+    }
+    assert!((1.05 * LOAD_N..1.55 * LOAD_N).contains(&load_n), "{load_n} N");
 }
 
 /// Final force of a hand that hears sliding in so many of 1,200 frames, N, on an object of so many N/mm under this shear, N.
@@ -51,14 +54,13 @@ fn closing_that_does_not_help_ends_at_half_as_much_again() {
 }
 
 #[test]
-fn with_s1_deaf_to_it_a_loud_slip_is_a_warning_still() {
+fn with_s1_deaf_to_it_a_slip_far_above_the_films_floors_is_answered_still() {
     let mut bench = Bench::holding(65);
     bench.accepts(set(SettingId::S1, 600));
     bench.run(2_000);
     bench.vibration_mv = 300.0;
     bench.run(1_000);
-    assert!(!bench.causes().contains(&Cause::Slip(DetectorId::S1)), "deaf by its threshold");
-    assert!(bench.causes().contains(&Cause::Incipient(DetectorId::S1)));
+    assert!(bench.by_reflex() > 0);
 }
 #[test]
 fn vibration_of_an_empty_hand_leaves_slip_of_the_next_grasp_believed() {

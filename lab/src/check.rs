@@ -87,9 +87,6 @@ impl Display for Bar {
 /// Bars that are measured together, beside other groups.
 pub type Group<'a> = Box<dyn Fn() -> anyhow::Result<Vec<Bar>> + Sync + Send + 'a>;
 
-/// Characters of a cell of the page.
-const CELL: usize = 160;
-
 /// The promise without its recording's name, if it is about one.
 fn of_recordings(bar: &Bar) -> Option<&str> {
     bar.promise.split_once(".csv: ").map(|(_, promise)| promise)
@@ -98,11 +95,10 @@ fn of_recordings(bar: &Bar) -> Option<&str> {
 /// docs/results.md: the same bytes for the same commit.
 pub fn page(bars: &[Bar]) -> String {
     let mut text = String::from(
-        "# Results\n\nWritten by `cargo tenax check --write`: each promise, measured, with seed 1 (the array's data: 4). No real board was measured.\n\n\
-         | promise | measured | limit | verdict |\n|---|---|---|---|\n",
+        "# Results\n\nWritten by `cargo tenax check --write`: each promise, measured, with seed 1 (the array's data: 4). No real board was measured.\n\n",
     );
     let judged: Vec<&Bar> = bars.iter().filter(|bar| bar.verdict != Verdict::Clock).collect();
-    // One row for recordings of one promise and verdict: the program prints each.
+    // One line for recordings of one promise and verdict: the program prints each.
     for rows in judged.chunk_by(|a, b| {
         a.verdict == b.verdict && of_recordings(a).is_some_and(|own| of_recordings(b) == Some(own))
     }) {
@@ -113,12 +109,8 @@ pub fn page(bars: &[Bar]) -> String {
             }
             _ => (first.promise.as_str(), String::new()),
         };
-        let cell = |text: &str| {
-            let end = if text.chars().count() > CELL { "..." } else { "" };
-            (text.chars().take(CELL).collect::<String>() + end).replace('|', "\\|")
-        };
-        let (measured, limit) = (cell(&(of + &first.measured)), cell(&first.limit));
-        text += &format!("| {} | {measured} | {limit} | {} |\n", cell(promise), first.verdict.name());
+        let limit = if first.limit.is_empty() { String::new() } else { format!("; limit {}", first.limit) };
+        text += &format!("- {}: {promise}: {of}{}{limit}\n", first.verdict.name(), first.measured);
     }
     text
 }
@@ -142,9 +134,6 @@ mod tests {
             Bar::new("c", "4", "3", false),
         ];
         let page = page(&bars);
-        assert!(
-            page.ends_with("|---|---|---|---|\n| a \\| b | 1 mm | 2 mm | kept |\n| c | 4 | 3 | NOT KEPT |\n"),
-            "{page}"
-        );
+        assert!(page.ends_with("\n\n- kept: a | b: 1 mm; limit 2 mm\n- NOT KEPT: c: 4; limit 3\n"), "{page}");
     }
 }

@@ -2,6 +2,7 @@
 //! or test, and one material to the test alone.
 
 pub mod collect;
+pub mod material;
 pub mod operator;
 pub mod session;
 pub mod story;
@@ -12,13 +13,12 @@ use rayon::prelude::*;
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 use tenax_hal_shim::channel::{ARRAY_COUNT, SLOW_HZ};
-use tenax_sim::array::material::HELD_OUT;
 use tenax_sim::jobs::{Jobs, Told};
-use tenax_sim::labelled::{self, Part, library};
-use tenax_sim::scorer::onsets;
+use tenax_sim::scorer::SlipSpan;
 
 use collect::{Recording, record};
-use session::{Session, Sizes, sessions};
+use material::HELD_OUT;
+use session::{Part, Session, Sizes, sessions};
 use story::Story;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -68,7 +68,7 @@ impl Dataset {
                 // The last step has the slips that begin after it, too.
                 let until_s = if step.t_s < last_s { step.t_s } else { f64::INFINITY };
                 let slips = std::iter::from_fn(|| spans.next_if(|span| span.micro_onset_s <= until_s));
-                let (label, slips) = (u8::from(step.slips), onsets::text(slips));
+                let (label, slips) = (u8::from(step.slips), onsets(slips));
                 let first = [session.split.name(), &session.name, session.material, &name, story];
                 let fields = first.map(str::to_owned).into_iter();
                 let fields = fields.chain([format!("{:.4}", step.t_s), label.to_string(), slips]);
@@ -76,11 +76,6 @@ impl Dataset {
             }
         }
         Ok(writer.into_inner()?)
-    }
-
-    pub fn recordings(&self) -> anyhow::Result<Vec<labelled::Recording>> {
-        let name = "array_dataset.csv";
-        Ok(labelled::parse(self.csv()?.as_slice(), &library::choose(name.as_ref(), None)?, name)?)
     }
 
     pub fn manifest(&self, file: &str, csv: &[u8]) -> Manifest {
@@ -140,6 +135,17 @@ pub struct Counts {
     pub slips: usize,
     /// Recordings in which the box fell.
     pub dropped: usize,
+}
+
+/// The slips of a step as [`COLUMNS`] has them, joined by `;`. An empty end is never.
+fn onsets<'a>(slips: impl Iterator<Item = &'a SlipSpan>) -> String {
+    let at = |s: Option<f64>| s.map_or(String::new(), |s| format!("{s:.6}"));
+    let one = |slip: &SlipSpan| {
+        let (macro_s, end_s) = (at(slip.macro_onset_s), at(Some(slip.end_s).filter(|s| s.is_finite())));
+        let meant = if slip.meant { "!" } else { "" };
+        format!("{:.6}/{macro_s}/{end_s}/{:.4}{meant}", slip.micro_onset_s, slip.distance_mm)
+    };
+    slips.map(one).collect::<Vec<_>>().join(";")
 }
 
 fn sha256(bytes: &[u8]) -> String {

@@ -74,6 +74,9 @@ pub trait Detector {
     fn describe(&self, config: &Self::Config) -> Description;
 }
 
+/// Readings before the array's verdict in which the films must have been loud, or half so, for it to be believed alone:
+/// it looks back on as much, 200 ms.
+const HEARD_WITHIN: u8 = 16;
 const OTHERS_GUARDED: u8 = slot_of(Job::Think) + 1;
 
 macro_rules! for_each_detector {
@@ -103,6 +106,8 @@ pub struct Detectors {
     pub injected: Injected,
     photoelastic: PhotoelasticDetector,
     record: Record,
+    /// An object has slid in this grasp.
+    pub has_slid: bool,
 }
 
 #[derive(Clone, Debug, Default)]
@@ -113,6 +118,10 @@ struct Record {
     decided_at: [u32; DetectorId::COUNT],
     guards: [Plausibility; DetectorId::COUNT],
     disturbance: Disturbance,
+    /// The films give no reading.
+    is_deaf: bool,
+    /// Readings since the films were loud as slip, or half so.
+    silent_for: u8,
 }
 
 impl Record {
@@ -156,6 +165,8 @@ impl Detectors {
                 self.record.note(id_of(detector), said, sensed.frame);
             }
         });
+        self.record.silent_for = sensed.vibration.silent_for;
+        self.record.is_deaf = !sensed.vibration_known;
         // The MLP decides once a cycle, and an implausible verdict must not act for a single tick.
         match sensed.slot {
             MLP_DECIDES => self.record.guard_array(sensed),
@@ -190,12 +201,15 @@ impl Detectors {
     }
 
     pub fn credible(&self) -> DetectorSet {
-        let Record { slip, ignored, .. } = self.record;
-        if self.s2.is_slip_unlikely() && !by_two_senses(slip.without(ignored)) {
-            DetectorSet::NONE
-        } else {
-            DetectorSet::ALL.without(ignored)
+        let Record { slip, incipient, ignored, .. } = self.record;
+        if self.s2.is_slip_unlikely(self.has_slid) && !by_two_senses(slip.without(ignored)) {
+            return DetectorSet::NONE;
         }
+        let array = DetectorSet::NONE.with(DetectorId::Mlp, true);
+        let alone = slip.or(incipient).without(ignored) == array && !self.record.is_deaf;
+        let far = alone && self.record.silent_for >= HEARD_WITHIN;
+        let ignored = if far { ignored.or(array) } else { ignored };
+        DetectorSet::ALL.without(ignored)
     }
 
     #[must_use]

@@ -160,16 +160,16 @@ impl Fingertip {
 
     /// Likewise, of the films.
     pub fn listen(&mut self) {
-        self.senses.listen(&self.config, &mut self.journal);
+        self.senses.listen(&self.config, self.reflex.is_still(), &mut self.journal);
     }
 
     fn feel(&mut self) {
         let held = self.senses.forces.filter(|_| matches!(self.senses.grip, Grip::Holds(_)));
-        let slides = self.reflex.slides(self.mode);
-        let s2 = &mut self.detectors.s2;
-        let lacks = held.map(|forces| s2.lacks(&self.config.friction, &forces, slides)).unwrap_or_default();
-        self.reflex.feel(self.mode, held.map(|forces| forces.load_mn), lacks);
-        let slid_permille = s2.slid_permille();
+        let s2 = &self.detectors.s2;
+        let lacks = held.map(|forces| s2.lacks(&self.config.friction, &forces)).unwrap_or_default();
+        self.reflex.feel(self.mode, held.as_ref(), lacks);
+        let slid_permille = self.reflex.slid_permille();
+        self.detectors.has_slid = slid_permille.is_some();
         let reading = held.map(|Forces { load_mn, ft_mn, .. }| Reading { load_mn, ft_mn, slid_permille });
         self.reflex.relax(self.mode, reading.filter(|_| self.may_relax()).as_ref());
     }
@@ -207,12 +207,8 @@ impl Fingertip {
         } else {
             self.senses.lose(&self.config, frame, &mut self.journal);
         }
-        let duty = match self.drive {
-            MotorDrive::Close(duty) | MotorDrive::Open(duty) => duty.as_per_mille(),
-            MotorDrive::Coast => 0,
-        };
         let moves = mode::closes(self.mode) || self.mode == GripMode::Settle;
-        let sensed = self.senses.sensed(&self.config, frame, duty, moves);
+        let sensed = self.senses.sensed(&self.config, frame, self.drive.permille(), moves);
         self.detectors.step(&self.config, &sensed);
     }
 
@@ -236,9 +232,7 @@ impl Fingertip {
             }
         }
         let verdicts = Verdicts::of(&self.detectors, self.muted.or(self.config.detectors_off));
-        if !verdicts.said.is_empty() {
-            self.reflex.hear();
-        }
+        self.reflex.hear(!verdicts.said.is_empty(), verdicts.heard(self.senses.vibration.s1));
         let behaviour = match self.behave(verdicts) {
             MotorDrive::Coast
                 if self.reflex.is_relaxing() && self.mode == GripMode::Watch && self.may_relax() =>
@@ -271,7 +265,10 @@ impl Fingertip {
         let driven = source == DriveSource::Wearer;
         let refused = self.reflex.account.step(&self.senses.gate, wishes.wearer, driven);
         self.senses.muscles_mut().refuse(refused);
-        self.reflex.tick(self.mode, grip);
+        let is_loud = drive.permille() >= self.config.hebbian.loud_duty_permille;
+        if self.reflex.tick(self.mode, grip, is_loud) && verdicts.slip.contains(DetectorId::S1) {
+            self.senses.refute();
+        }
         self.took_back |= source == DriveSource::Reflex && drive.opens();
         if let MotorDrive::Close(duty) = drive {
             self.reflex.closes(duty, source == DriveSource::Reflex);
@@ -309,16 +306,18 @@ impl Fingertip {
         let taken_over = self.senses.gate.is_active() || self.link_silences() || answered;
         self.cause(if self.senses.ready(&self.config) { Cause::SensorsReady } else { Cause::SensorsLost });
         self.cause(if taken_over { Cause::TakenOver } else { Cause::Released });
-        let may_close = self.reflex.may_close(&config, grip);
         let slips = !verdicts.slip.is_empty();
-        if may_close && let Some(id) = verdicts.slip.first() {
-            self.cause(Cause::Slip(id));
-        }
-        if may_close
-            && let Some(id) = verdicts.incipient.first()
-            && self.reflex.may_tighten(&config, grip)
-        {
-            self.cause(Cause::Incipient(id));
+        if !verdicts.believed.is_empty() && self.reflex.may_close(&config, grip) {
+            if let Some(id) = verdicts.slip.first()
+                && self.reflex.may_answer(grip)
+            {
+                self.cause(Cause::Slip(id));
+            }
+            if let Some(id) = verdicts.incipient.first()
+                && self.reflex.may_tighten(&config, grip)
+            {
+                self.cause(Cause::Incipient(id));
+            }
         }
         if mode::closes(self.mode) && self.reflex.pulse_over(&config, self.mode, slips, grip) {
             self.cause(Cause::PulseOver);
@@ -348,9 +347,9 @@ impl Fingertip {
     #[inline(never)]
     fn change(&mut self, to: GripMode, cause: Cause) {
         let from = core::mem::replace(&mut self.mode, to);
-        self.reflex.enter(to, self.senses.grip);
+        let held = self.senses.forces.as_ref().filter(|_| matches!(self.senses.grip, Grip::Holds(_)));
+        self.reflex.enter(to, self.senses.grip, held.zip(self.detectors.s2.carried()));
         if to == GripMode::Slip {
-            self.detectors.s2.slips();
             self.feedback.slips();
         }
         if matches!(cause, Cause::Incipient(DetectorId::S2)) {

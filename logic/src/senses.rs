@@ -295,13 +295,20 @@ impl Senses {
         self.select_lines.look(&samples.switch_b);
     }
 
-    /// Noise of the films and steady sliding. Call it once a slow frame, in another tick than [`think`](Self::think).
+    /// Noise of the films, quiet slips and steady sliding. `still`: the motor has not been loud of late. Call it once a slow
+    /// frame, in another tick than [`think`](Self::think).
     #[inline(never)]
-    pub fn listen(&mut self, config: &Config, journal: &mut Journal) {
+    pub fn listen(&mut self, config: &Config, still: bool, journal: &mut Journal) {
         self.films.slow(|film, change| report(journal, PVDF + film, Some(change)));
         self.detector.learn_noise(&config.vibration, self.unloaded);
         let forces = self.forces.filter(|_| matches!(self.grip, Grip::Holds(_)));
-        self.detector.slow(&Hand { forces, wearer: self.gate.is_active(), striking: self.striking });
+        let (wearer, striking) = (self.gate.is_active(), self.striking);
+        self.detector.slow(&config.vibration, Hand { forces, wearer, striking, still, loud: false });
+    }
+
+    /// A report of slip has been refuted.
+    pub fn refute(&mut self) {
+        self.detector.refute();
     }
 
     /// The films get a healthy silent film in the head's place. Compiled apart: twelve films cost nothing more.

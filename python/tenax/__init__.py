@@ -1,7 +1,7 @@
 """A fingertip that feels slip: its firmware's logic and worlds, its serial line and its recordings. README.md begins with examples.
 
     Fingertip, detect     the firmware's logic and its detectors on arrays
-    vision                a camera behind a clear skin
+    vision, camera        a camera behind a clear skin; videos and cameras
     run, replay           a scene or a recording on the PC's build of the firmware
     grip                  Gymnasium environments, baselines and their scores
     open, decode          a board's line, live; recordings (MCAP), captured lines

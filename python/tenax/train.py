@@ -5,9 +5,8 @@ rounded to the firmware's integers and written as its tables.
     python -m tenax.train mine.csv --recipe r.toml --out out/train     # your own recordings: docs/array.md
     python -m tenax.train out/array_dataset.csv --ship .               # into this checkout's logic; then flash
 
-Needs `pip install './python[train]'`. `out/train` gets `network.in` (Rust for the firmware), `network.json` (for `cargo tenax evaluate
---network`), `model-card.md` and `report.json`. Learned from the training part, chosen on the validation part; without parts, sessions are left
-out in turn. The test part is not looked at.
+Needs `pip install './python[train]'`. `out/train` gets `network.in` (Rust for the firmware), `network.json`, `model-card.md` and `report.json`.
+Learned from the training part, chosen on the validation part; without parts, sessions are left out in turn. `--test` scores the test part, too.
 """
 
 from __future__ import annotations
@@ -35,7 +34,7 @@ from sklearn.preprocessing import StandardScaler
 from sklearn.svm import SVC
 from threadpoolctl import threadpool_limits
 
-from . import MV, _native
+from . import MV, _native, labelled
 
 Floats = NDArray[np.float32]
 Rows = NDArray[Any]
@@ -43,6 +42,8 @@ Labels = NDArray[np.bool_]
 
 INPUTS, UNITS = 112, (32, 16)
 PASSES = 12
+# From the last element's reading to the network's verdict.
+DECIDED_S = 0.0025
 # Covariances and spectra tell few objects apart rather than their sliding: they are scaled down beside variances and structure functions.
 SHYNESS = 0.1
 # Part of the steps of pours: the paper's 36 in 2800, less a fifth for sessions other than those that a threshold is chosen on.
@@ -76,6 +77,9 @@ class Steps:
     pours: bool
     rows: NDArray[np.int16]
     slips: Labels
+    recording: labelled.Recording
+    # Readings before the first row.
+    silent: int
 
 
 @dataclass
@@ -402,24 +406,67 @@ def card(report: Dict[str, Any]) -> str:
         ]
     lines += [
         "", "## Limits", "", "It knows the sensor, the materials and the ways of slipping of the data above, and no others. A report ends late, since its windows still hold "
-        "the slip. Confidence is calibrated for the data's share of slip. `cargo tenax evaluate --network` scores it on data that nothing was chosen by.", "",
+        "the slip. Confidence is calibrated for the data's share of slip. `--test` scores it on data that nothing was chosen by.", "",
     ]
     return "\n".join(lines)
 
 
-def steps_of(path: Path, recipe_name: Optional[str]) -> Tuple[List[Steps], Recipe, Tuple[float, float]]:
-    """Features of a labelled file, less its test part; and from what to what the noise of the arrays reaches that are learned from."""
-    recordings, given = _native.labelled_recordings(str(path), recipe_name)
-    recipe, all_steps = Recipe(*given), []
-    recordings = [own for own in recordings if own["part"] != "test"]
+def steps_of(path: Path, recipe_name: Optional[str], test: bool = False) -> Tuple[List[Steps], Recipe, Tuple[float, float]]:
+    """Features of a labelled file, less its test part, or of that alone; and the least and the most noise of the arrays that are learned from."""
+    given = labelled.recipe_of(path, recipe_name)
+    recordings = [own for own in labelled.read(path, given) if (own.part == "test") == test]
+    recipe, all_steps = Recipe(**given["features"]), []
     for own in recordings:
-        rows, known = features(own["samples"], recipe)
-        all_steps.append(Steps(own["session"], own["material"], own["part"], own["pours"], rows[known], own["slips"][known]))
+        rows, known = features(own.samples, recipe)
+        all_steps.append(Steps(own.session, own.material, own.part, own.task == "pour", rows[known], own.slips[known], own, int(np.argmax(known))))
     if not any(len(own.rows) for own in all_steps):
-        raise ValueError(f"{path}: every recording is shorter than the windows")
+        raise ValueError(f"{path}: every recording is shorter than the windows, or none is there")
     # What is disturbed has more noise than its array, and no slip to be learned in it.
-    noise = [own["noise"] for own in recordings if own["part"] in (None, "train") and not own["disturbs"]]
+    noise = [own.noise() for own in recordings if own.part in (None, "train") and own.task != "disturb"]
     return all_steps, recipe, (min(noise, default=0.0), max(noise, default=0.0))
+
+
+def edges(saved: Dict[str, Any], pours: Sequence[Steps], on: NDArray[np.int64], off: NDArray[np.int64]) -> Tuple[Dict[str, Any], ...]:
+    """Scores of pours where slip begins at a confidence and ends below another, per mille: of each pair, and of those that are quiet the best."""
+    counts, hours = np.zeros((2, 2, len(on))), 0.0
+    alarms, caught, slips = np.zeros(len(on)), np.zeros(len(on)), 0
+    for own in pours:
+        confidence = 1000 / (1 + np.exp(-judge(saved, own.rows)))
+        said = np.zeros((len(own.slips) + 1, len(on)), np.bool_)
+        for n, value in enumerate(confidence):
+            said[n + 1] = value >= np.where(said[n], off, on)
+        begins, said = said[1:] & ~said[:-1], said[1:]
+        for is_slip in (0, 1):
+            own_steps = said[own.slips == is_slip]
+            counts[is_slip] += ((~own_steps).sum(axis=0), own_steps.sum(axis=0))
+        silent = own.recording.slips[: own.silent]
+        counts[:, 0] += np.array([np.count_nonzero(~silent), np.count_nonzero(silent)])[:, None]
+        hours += (len(own.slips) + own.silent) / labelled.RATE_HZ / 3600
+        at_s = own.recording.first_s + (own.silent + np.arange(len(begins))) / labelled.RATE_HZ + DECIDED_S
+        moves = [span for span in own.recording.spans if span.macro_s is not None]
+        alarms += begins[~np.any([span.owns(at_s) for span in moves], axis=0)].sum(axis=0) if moves else begins.sum(axis=0)
+        for span in moves:
+            if not span.meant:
+                slips += 1
+                caught += begins[span.owns(at_s) & (at_s <= (span.macro_s or 0) + labelled.CAUGHT_S)].any(axis=0)
+    every, right = counts.sum(axis=(0, 1)), counts[[0, 1], [0, 1]] / np.maximum(counts.sum(axis=1), 1)
+    table = {
+        "balanced": right.mean(axis=0), "missed_2800": 2800 * counts[1, 0] / every, "false_2800": 2800 * counts[0, 1] / every,
+        "caught_50ms": caught / max(slips, 1), "false_per_hour": alarms / max(hours, 1e-12),
+    }
+    return tuple({"slips": slips, **{name: float(values[n]) for name, values in table.items()}} for n in range(len(on)))
+
+
+def best_edges(saved: Dict[str, Any], pours: Sequence[Steps]) -> Optional[Dict[str, Any]]:
+    """The two thresholds with the best balanced accuracy that are quiet enough, and their scores."""
+    on, off = (each.ravel() for each in np.meshgrid(np.arange(500, 1000, 25), np.arange(50, 1000, 25), indexing="ij"))
+    on, off = on[off <= on], off[off <= on]
+    scored = [(pour["balanced"], n, pour) for n, pour in enumerate(edges(saved, pours, on, off))] if pours else []
+    quiet = [own for own in scored if own[2]["false_per_hour"] <= 60 and own[2]["false_2800"] <= 29]
+    if not quiet:
+        return None
+    _, n, pour = max(quiet, key=lambda own: own[:2])
+    return {"on_permille": int(on[n]), "off_permille": int(off[n]), "pour": pour}
 
 
 def _where(one: Choice, other: Choice, judged: Sequence[Steps]) -> str:
@@ -431,6 +478,20 @@ def _where(one: Choice, other: Choice, judged: Sequence[Steps]) -> str:
         if right[0] > right[1]:
             better.append(material)
     return ", ".join(better) or "no material"
+
+
+def tested(path: Path, recipe_name: Optional[str], saved: Dict[str, Any]) -> Dict[str, Any]:
+    """Scores of the test part, which nothing was chosen by, at the thresholds that are written."""
+    sequences, _, _ = steps_of(path, recipe_name, test=True)
+    rows, slips = rows_of(sequences)
+    odds = judge(saved, rows)
+    says = odds >= -math.log(1000 / saved["on_permille"] - 1)
+    pours = [own for own in sequences if own.pours]
+    on, off = (np.array([saved[name]]) for name in ("on_permille", "off_permille"))
+    return {
+        "balanced": float(balanced_accuracy_score(slips, says)), "auc": float(roc_auc_score(slips, odds)),
+        "pour": edges(saved, pours, on, off)[0] if pours else None,
+    }
 
 
 def train(path: Path, recipe_name: Optional[str] = None, seed: int = 1, at_most: int = 20_000) -> Tuple[Dict[str, Any], Dict[str, Any]]:
@@ -459,9 +520,10 @@ def _train(path: Path, recipe_name: Optional[str], seed: int, at_most: int) -> T
         "structure_knee": recipe.structure_knee, **quantise(own.network, rows, own.calibration, own.threshold), "noise_samples": list(noise),
     }
     permille = saved["on_permille"]
-    edges = json.loads(_native.edges_of(str(path), recipe_name, json.dumps(saved)) or "null") if recipe.window == 10 else None
-    if edges:
-        saved.update(on_permille=edges["on_permille"], off_permille=edges["off_permille"])
+    pours = [own for own in sequences if own.part == "validation" and own.pours]
+    two = best_edges(saved, pours) if recipe.window == 10 else None
+    if two:
+        saved.update(on_permille=two["on_permille"], off_permille=two["off_permille"])
     (some, which), (unseen, truth) = rows_of(first), rows_of(judged)
     if len(some) > at_most:
         kept = np.random.default_rng(seed).choice(len(some), at_most, replace=False)
@@ -480,7 +542,7 @@ def _train(path: Path, recipe_name: Optional[str], seed: int, at_most: int) -> T
     choice = {"name": own.name, "unseen": own.unseen, "threshold": own.threshold, "calibration": own.calibration}
     report = {
         "verdict": verdict, "seed": seed, "data": data, "features": vars(recipe), "has_parts": has_parts, "at_most": at_most, "choice": choice,
-        "threshold_permille": permille, "edges": edges, "scores": scores,
+        "threshold_permille": permille, "edges": two, "scores": scores,
     }
     return saved, report
 
@@ -492,10 +554,13 @@ def main(arguments: Optional[Sequence[str]] = None) -> int:
     parser.add_argument("--out", type=Path, default=Path("out/train"), help="folder for what is written")
     parser.add_argument("--seed", type=int, default=1, help="of the initial weights and of the training order")
     parser.add_argument("--rows", type=int, default=20_000, help="rows that the five classifiers learn from, at most")
+    parser.add_argument("--test", action="store_true", help="also score the test part: once, when everything is chosen")
     parser.add_argument("--ship", type=Path, metavar="CHECKOUT", help="also replace logic/src/array/network.in of this checkout")
     asked = parser.parse_args(arguments)
     try:
         saved, report = train(asked.dataset, asked.recipe, asked.seed, asked.rows)
+        if asked.test:
+            report["test"] = tested(asked.dataset, asked.recipe, saved)
     except (OSError, ValueError) as error:
         print(f"error: {error}", file=sys.stderr)
         return 2
@@ -513,6 +578,8 @@ def main(arguments: Optional[Sequence[str]] = None) -> int:
     print(report["verdict"])
     for name, score in report["scores"].items():
         print(f"{name:<42}balanced accuracy {score['balanced']:.3f}, AUC {score['auc']:.3f}")
+    if asked.test:
+        print(f"test part: {report['test']}")
     print(f"{asked.out}: network.in, network.json, model-card.md, report.json")
     return 0
 

@@ -15,7 +15,7 @@ __all__ = ["Camera", "Seen", "Summary", "drawn"]
 class Summary(NamedTuple):
     """What a picture says; px are pixels, x right, y down. None: not seen."""
 
-    # Why the rest is not to be believed: lost, late, frozen or covered.
+    # Why the rest is not to be believed: late, frozen or covered.
     blind: Optional[str]
     markers: int
     # Mean move of the markers (shear x and y), mean size of the moves (the paper's normal force), px; and torque, px^2.
@@ -37,10 +37,12 @@ class Camera:
     def __init__(self, focal_px: Optional[float] = None) -> None:
         self._own = _native.Camera(float("inf") if focal_px is None else focal_px)
 
-    def picture(self, rgb: ArrayLike, taken_s: float, *, learn: bool) -> Summary:
-        """Takes a picture of 240 x 320 x 3 bytes, taken `taken_s` after the first. `learn`: the hand is open, and the colours of what comes are the
-        object's."""
-        return Summary(**self._own.picture(np.asarray(rgb, dtype=np.uint8), learn, round(1000 * taken_s)))
+    def picture(self, rgb: ArrayLike, taken_s: float, *, learn: bool, now_s: Optional[float] = None) -> Summary:
+        """Takes a picture of 240 x 320 x 3 bytes, taken `taken_s` after the first; live, it comes at `now_s`. `learn`: the hand is open, and the
+        colours of what comes are the object's."""
+        taken_ms = round(1000 * taken_s)
+        now_ms = taken_ms if now_s is None else round(1000 * now_s)
+        return Summary(**self._own.picture(np.asarray(rgb, dtype=np.uint8), learn, taken_ms, now_ms))
 
     @property
     def markers(self) -> NDArray[np.float32]:

@@ -1,9 +1,18 @@
 """The camera's tracker on drawn pictures, whose truth is known."""
 
+import contextlib
+import csv
+import io
+import json
+import os
+import tempfile
 import unittest
+from pathlib import Path
+from unittest import mock
 
 import numpy as np
 
+from tenax import camera as cameras
 from tenax import vision
 
 
@@ -29,6 +38,25 @@ class Drawn(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "240 x 320 x 3"):
             camera.picture(np.zeros((120, 160, 3)), 0.0, learn=True)
         self.assertEqual(camera.picture(np.zeros((240, 320, 3)), 0.0, learn=True).blind, "covered")
+
+    def test_a_video_becomes_tables_and_a_report(self) -> None:
+        with tempfile.TemporaryDirectory() as folder:
+            # What ffmpeg would decode.
+            film, ffmpeg = Path(folder) / "skin.rgb", Path(folder) / "ffmpeg"
+            film.write_bytes(b"".join(np.ascontiguousarray(seen.rgb).tobytes() for _, seen in zip(range(60), vision.drawn(seed=3))))
+            ffmpeg.write_text(f"#!/bin/sh\ncat '{film}'\n")
+            ffmpeg.chmod(0o755)
+            told = io.StringIO()
+            with mock.patch.dict(os.environ, PATH=f"{folder}:{os.environ['PATH']}"), contextlib.redirect_stdout(told):
+                self.assertEqual(cameras.main([str(film), "--out", f"{folder}/seen"]), 0)
+            report = json.loads(told.getvalue())
+            self.assertEqual((report["frames"], report["blind"]), (60, {}))
+            self.assertGreater(report["markers"], 15)
+            rows = [list(csv.DictReader(Path(f"{folder}/seen/{name}.csv").read_text().splitlines())) for name in ("markers", "object")]
+            self.assertEqual((len(rows[1]), rows[1][-1]["frame"]), (60, "59"))
+            self.assertLess(abs(float(rows[0][-1]["dx"])), 30)
+        with mock.patch.dict(os.environ, PATH=""), self.assertRaisesRegex(OSError, "not installed"):
+            next(cameras.pictures("nowhere.m4v"))
 
 
 if __name__ == "__main__":

@@ -5,8 +5,6 @@
 
 #[cfg(feature = "host")]
 pub mod again;
-#[cfg(feature = "host")]
-pub mod array;
 pub mod board;
 #[cfg(feature = "host")]
 pub mod budgets;
@@ -25,13 +23,9 @@ pub mod input;
 #[cfg(feature = "host")]
 pub mod jobs;
 #[cfg(feature = "host")]
-pub mod labelled;
-#[cfg(feature = "host")]
 pub mod live;
 #[cfg(feature = "host")]
 pub mod plot;
-#[cfg(feature = "host")]
-pub mod recipe;
 #[cfg(feature = "host")]
 pub mod replay;
 #[cfg(feature = "host")]

@@ -1,4 +1,4 @@
-//! The one definition of caught, and of a false alarm: `run`, `evaluate` and `learn` score with it.
+//! The one definition of caught, and of a false alarm: `run`, `learn` and `check` score with it.
 //!
 //! A macro slip is **caught** if a detection begins between its micro onset and 50 ms after its macro onset: `early` if that is before the
 //! macro onset. One that begins later is **late**, until 50 ms after the slip's end: a detection may take so long there, too. A verdict
@@ -10,7 +10,6 @@
 //! may have prevented the slip; it is a false alarm all the same, and `in_micro_slip` says how many are of that kind.
 
 pub mod doing;
-pub mod onsets;
 
 use std::collections::BTreeMap;
 
@@ -148,8 +147,6 @@ pub struct Card {
     /// Detection less macro onset of those caught, ms, in their order.
     #[serde(skip)]
     pub latencies_ms: Vec<f64>,
-    #[serde(skip)]
-    pub after_micro_ms: Vec<f64>,
     pub false_alarms: Alarms,
     pub false_by: BTreeMap<Doing, Alarms>,
 }
@@ -163,7 +160,6 @@ impl Card {
             card.slips.take(outcome);
             if let Outcome::Caught(latency_s) = outcome {
                 card.latencies_ms.push(latency_s * 1e3);
-                card.after_micro_ms.push((latency_s + macro_onset_s - slip.micro_onset_s) * 1e3);
             }
         }
         let alarms_s = false_alarms_s(slips, verdicts);
@@ -183,16 +179,10 @@ impl Card {
     pub fn add(&mut self, other: &Self) {
         self.slips.add(other.slips);
         self.latencies_ms.extend(&other.latencies_ms);
-        self.after_micro_ms.extend(&other.after_micro_ms);
         self.false_alarms.add(other.false_alarms);
         for (&doing, alarms) in &other.false_by {
             self.false_by.entry(doing).or_default().add(*alarms);
         }
-    }
-
-    /// The part of the slips that was caught. None if there was none.
-    pub fn caught_part(&self) -> Option<f64> {
-        (self.slips.count > 0).then(|| self.slips.caught as f64 / self.slips.count as f64)
     }
 
     /// The latency that this part of those caught do not exceed, ms. None if none was caught.

@@ -68,13 +68,17 @@ fn a_can_and_a_card_are_taken_and_none_is_crushed() {
     }
 }
 
+/// The reflex acts on no detector.
+const MUTED: &str = "\n[[command]]\nat_s = 0.1\nkind = \"set-detectors-off-mask\"\nvalue = 31\n";
+
 #[test]
 fn what_is_soft_is_held_against_a_pull_and_a_swing() {
     for name in ["hold-crane", "hold-marshmallow", "hold-toy"] {
         let held = unharmed(name);
         assert!(name != "hold-crane" || slid_mm(&held) < 0.5, "{} mm", slid_mm(&held));
-        // The control: nobody holds.
-        fails(name, &run(&text(name).replace("kind = \"hold\"", "kind = \"end\"")));
+        // The control: nobody holds, the reflex neither.
+        let nobody = text(name).replace("kind = \"hold\"", "kind = \"end\"");
+        fails(name, &run(&format!("{nobody}{MUTED}")));
     }
 }
 
@@ -88,9 +92,8 @@ fn holding_slips_less_than_a_gentle_grasp() {
 #[test]
 fn water_is_poured_into_a_cup_that_stays_where_it_is() {
     // The control: nobody holds it, and the reflex acts on no detector.
-    let nobody = "[[command]]\nat_s = 0.1\nkind = \"set-detectors-off-mask\"\nvalue = 31\n\
-        [[command]]\nat_s = 4.2\nkind = \"end\"\n";
-    let (ours, theirs) = (unharmed("fill-cup"), fates("fill-cup", nobody));
+    let nobody = format!("{MUTED}[[command]]\nat_s = 4.2\nkind = \"end\"\n");
+    let (ours, theirs) = (unharmed("fill-cup"), fates("fill-cup", &nobody));
     assert!(slid_mm(&ours) < 0.2 * slid_mm(&theirs), "{} mm of {}", slid_mm(&ours), slid_mm(&theirs));
     fails("fill-cup", &theirs);
 }

@@ -9,7 +9,6 @@ use tenax_scene::{SceneFile, World, builtin};
 use tenax_sim::board::hash::{Hash, of_run, of_scene};
 use tenax_sim::board::{Run, simulated};
 use tenax_sim::live::Use;
-use tenax_sim::recipe::Kind;
 use tenax_sim::replay::Recipe;
 use tenax_sim::session::{self, Board};
 

@@ -2,7 +2,6 @@
 
 use crate::common::with_head;
 use tenax_sim::input::Table;
-use tenax_sim::recipe::Kind;
 use tenax_sim::replay::recipe::Time;
 use tenax_sim::replay::{Recipe, Recording};
 

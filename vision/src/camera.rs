@@ -192,10 +192,6 @@ impl Camera {
             self.skin = Skin::default();
         }
     }
-
-    pub fn silence(&self, now_ms: u32) -> Option<Blind> {
-        self.watch.silence(now_ms)
-    }
 }
 
 /// Pictures from which the angle of a held object is made.

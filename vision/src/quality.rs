@@ -1,17 +1,15 @@
-//! Whether a camera's pictures can be believed: lost, late, frozen and covered cameras say nothing about the object.
+//! Whether a camera's pictures can be believed: late, frozen and covered cameras say nothing about the object.
 
 use crate::frame::{PIXELS, Plane, WIDTH};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Blind {
-    Lost(u32),
     Late(u32),
     Frozen(u32),
     Covered,
 }
 
 pub const LATE_MS: u32 = 150;
-pub const LOST_MS: u32 = 200;
 pub const FROZEN_MS: u32 = 150;
 /// A picture whose grey levels differ less than this (standard deviation) shows nothing.
 const CONTRAST_MIN: f32 = 5.0;
@@ -24,9 +22,8 @@ const ROWS: usize = 5;
 
 #[derive(Clone, Debug, Default)]
 pub struct Watch {
-    last_ms: Option<u32>,
     same_since_ms: Option<u32>,
-    sum: u64,
+    sum: Option<u64>,
 }
 
 impl Watch {
@@ -49,8 +46,7 @@ impl Watch {
         let n = (PIXELS / ROWS) as f32;
         let level = sum as f32 / n;
         let contrast = libm::sqrtf((squares as f32 / n - level * level).max(0.0));
-        let same = self.last_ms.is_some() && checksum == self.sum;
-        (self.last_ms, self.sum) = (Some(now_ms), checksum);
+        let same = self.sum.replace(checksum) == Some(checksum);
         self.same_since_ms = if same { self.same_since_ms.or(Some(now_ms)) } else { None };
         let age = now_ms.wrapping_sub(taken_ms);
         let frozen = self.same_since_ms.map_or(0, |since| now_ms.wrapping_sub(since));
@@ -62,11 +58,6 @@ impl Watch {
             () if is_covered => Some(Blind::Covered),
             () => None,
         }
-    }
-
-    pub fn silence(&self, now_ms: u32) -> Option<Blind> {
-        let silent = self.last_ms.map_or(now_ms, |last| now_ms.wrapping_sub(last));
-        (silent >= LOST_MS).then_some(Blind::Lost(silent))
     }
 }
 
@@ -83,13 +74,11 @@ mod tests {
     }
 
     #[test]
-    fn late_frozen_covered_and_lost_are_told_apart_from_a_camera_that_works() {
+    fn late_frozen_and_covered_are_told_apart_from_a_camera_that_works() {
         let mut watch = Watch::default();
-        assert_eq!(watch.silence(300), Some(Blind::Lost(300)));
         for frame in 0..100 {
             let now = 33 * frame;
             assert_eq!(watch.picture(&picture(frame), (20, 23), now.saturating_sub(40), now), None);
-            assert_eq!(watch.silence(now + 30), None);
         }
         let mut watch = Watch::default();
         assert_eq!(watch.picture(&picture(1), (20, 23), 0, 200), Some(Blind::Late(200)));
@@ -102,7 +91,5 @@ mod tests {
         let mut dark = picture(5);
         dark.iter_mut().for_each(|level| *level /= 32);
         assert_eq!(watch.picture(&dark, (20, 23), 666, 666), Some(Blind::Covered));
-        assert_eq!(watch.silence(800), None);
-        assert_eq!(watch.silence(866), Some(Blind::Lost(200)));
     }
 }

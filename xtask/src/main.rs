@@ -52,9 +52,9 @@ const PROGRAMS: [Program; 4] = [
             ("learn", "a camera teaches the Hebbian network"),
             ("dataset", "labelled recordings of the force array"),
             ("train", "intent recognition on recordings of people"),
-            ("evaluate", "networks and intent recognition on recordings"),
+            ("evaluate", "intent recognition, scored on people"),
             ("chart", "the figures of docs/"),
-            ("vision", "skin and object through the camera"),
+            ("vision", "skin and object in drawn pictures"),
         ],
     },
 ];

@@ -1,13 +1,14 @@
 use proptest::prelude::*;
 use tenax_hal_shim::channel::SAMPLE_MAX;
 use tenax_logic::array::covariance::SlidingCovariance;
+use tenax_logic::array::spectrum::SlidingSpectrum;
 use tenax_logic::array::structure::{FULL_AFTER, WINDOWS};
 use tenax_logic::array::{
     COVARIANCE_WINDOW, COVARIANCES, ELEMENTS, FEATURES, Features, PAPER_FEATURES, Preprocessor,
     PreprocessorConfig, Reading, SPECTRUM_WINDOW,
 };
 
-use super::oracle::{compressed, covariances, magnitudes, structures};
+use super::oracle::{compressed, covariances, magnitudes, structures, sums};
 use super::{alive, readings};
 
 fn some(samples: &[u16; ELEMENTS]) -> Reading {
@@ -66,7 +67,7 @@ proptest! {
             prop_assert!((f64::from(feature.abs()) - size).abs() <= 1.01, "{feature} {exact}");
             prop_assert!(*feature == 0 || (*feature > 0) == (exact > 0), "{feature} {exact}");
         }
-        for (feature, exact) in features[COVARIANCES..PAPER_FEATURES].iter().zip(magnitudes(&frames)) {
+        for (feature, exact) in features[COVARIANCES..PAPER_FEATURES].iter().zip(magnitudes(&sums(&frames))) {
             // Each part of the transform is rounded down by less than one sample, and its magnitude by less than 1.5.
             let (low, high) = ((exact - 1.5).max(0.0), exact + 1.5);
             let low = compressed(low * low, config.spectrum_knee) - 1.01;
@@ -74,8 +75,8 @@ proptest! {
             prop_assert!((low..=high).contains(&f64::from(*feature)), "{feature} {exact}");
         }
         let widths = [1, 1, 2, 4, 8, 16];
-        let sums = structures(&frames).into_iter().flat_map(|sums| sums.into_iter().zip(widths));
-        for (n, (feature, (exact, width))) in features[PAPER_FEATURES..].iter().zip(sums).enumerate() {
+        let energies = structures(&frames).into_iter().flat_map(|sums| sums.into_iter().zip(widths));
+        for (n, (feature, (exact, width))) in features[PAPER_FEATURES..].iter().zip(energies).enumerate() {
             // The quiet level remembers more than the windows.
             if n == WINDOWS - 1 {
                 continue;
@@ -165,5 +166,25 @@ fn the_covariance_does_not_overflow() {
     for (difference, size) in [(i32::MIN, d_max), (i32::MAX, d_max - 1), (i32::MAX, d_max - 1)] {
         (0..N).for_each(|_| covariance.push(&[difference; ELEMENTS]));
         assert!(covariance.entries().iter().all(|&entry| i64::from(entry) == size * size * N as i64));
+    }
+}
+
+#[test]
+fn after_any_time_the_spectrum_is_the_transform_of_its_window() {
+    const FULL: i32 = 10 * SAMPLE_MAX as i32;
+    let noise = |n: u32| (n.wrapping_mul(0x9E37_79B9) >> 12) as i32 % FULL;
+    let square = |n: u32| if (n / 20).is_multiple_of(2) { FULL } else { -FULL };
+    let waves: [fn(u32) -> i32; 3] = [noise, square, |_| FULL];
+    for (length, wave) in
+        [40, 41, 77, 100_000].into_iter().flat_map(|length| waves.map(|wave| (length, wave)))
+    {
+        let sums: Vec<i32> = (0..length).map(wave).collect();
+        let mut spectrum = SlidingSpectrum::default();
+        sums.iter().for_each(|&sum| spectrum.push(sum));
+        for (found, exact) in spectrum.powers().into_iter().zip(magnitudes(&sums)) {
+            // Each part is rounded down to one unit: at most sqrt(2) of them; and a single has 24 bits.
+            let found = f64::from(found).sqrt();
+            assert!((found - exact).abs() < 1.5 + 2e-7 * exact, "{length}: {found} {exact}");
+        }
     }
 }

@@ -21,14 +21,21 @@ pub fn covariances(readings: &[[u16; ELEMENTS]]) -> [i64; COVARIANCES] {
     std::array::from_fn(|n| entry(pairs[n]))
 }
 
-pub fn magnitudes(readings: &[[u16; ELEMENTS]]) -> [f64; BINS] {
-    let rest = f64::from(sample_from_mv(CHANNELS[ARRAY].rest_mv));
-    let last = &readings[readings.len() - SPECTRUM_WINDOW..];
-    let sums: Vec<f64> = last.iter().map(|r| r.iter().map(|&x| f64::from(x) - rest).sum()).collect();
+/// Elements' sums above rest.
+pub fn sums(readings: &[[u16; ELEMENTS]]) -> Vec<i32> {
+    let rest = ELEMENTS as i32 * i32::from(sample_from_mv(CHANNELS[ARRAY].rest_mv));
+    readings
+        .iter()
+        .map(|reading| reading.iter().map(|&sample| i32::from(sample)).sum::<i32>() - rest)
+        .collect()
+}
+
+pub fn magnitudes(sums: &[i32]) -> [f64; BINS] {
+    let last = &sums[sums.len() - SPECTRUM_WINDOW..];
     std::array::from_fn(|bin| {
         let part = |wave: fn(f64) -> f64| -> f64 {
-            let angle = |n: usize| 2.0 * PI * (n * bin) as f64 / SPECTRUM_WINDOW as f64;
-            sums.iter().enumerate().map(|(n, sum)| sum * wave(angle(n))).sum()
+            let angle = |n: usize| 2.0 * PI * (n * bin % SPECTRUM_WINDOW) as f64 / SPECTRUM_WINDOW as f64;
+            last.iter().enumerate().map(|(n, &sum)| f64::from(sum) * wave(angle(n))).sum()
         };
         part(f64::cos).hypot(part(f64::sin))
     })

@@ -1,4 +1,4 @@
-//! Equations 3 to 6 in `f64`, written as they stand in the paper, and their fixed point.
+//! Equations 3 to 6 in `f64`, written as they stand in the paper.
 
 use tenax_logic::hebbian::{Activations, Code, Config, Network};
 
@@ -66,26 +66,4 @@ impl<const I: usize, const O: usize> Reference<I, O> {
             }
         }
     }
-}
-
-/// Mean weights at which equations 5 and 6 settle, for `c[j]` the mean of `t_j v`: `w = k c delta / (1 - k |c|)` with the one
-/// `k = alpha / (beta (S + delta))` below `1 / max |c|`.
-pub fn fixed_point<const I: usize>(rates: &Rates, c: &[f64; I]) -> [f64; I] {
-    let ratio = rates.alpha / rates.beta;
-    let largest = c.iter().fold(0.0f64, |largest, c| largest.max(c.abs()));
-    if largest == 0.0 {
-        return [0.0; I];
-    }
-    let at = |k: f64| c.map(|c| k * c * rates.delta / (1.0 - k * c.abs()));
-    let (mut low, mut high) = (0.0, 1.0 / largest);
-    for _ in 0..200 {
-        let k = 0.5 * (low + high);
-        let sum: f64 = at(k).iter().map(|w| w.abs()).sum();
-        if k * (sum + rates.delta) < ratio {
-            low = k;
-        } else {
-            high = k;
-        }
-    }
-    at(low)
 }

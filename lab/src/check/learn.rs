@@ -2,18 +2,18 @@
 
 use super::{Bar, Goal, Verdict};
 use crate::learn::report::{Score, told};
-use crate::learn::{self, LESSONS, Options};
+use crate::learn::{self, LESSONS, Options, Progress};
 
 /// Lead of the network's first word (slip, or a warning of it) over vision, s, mean (Tada 2006: 0.89 s less 0.73 s).
 const LEAD_S: f64 = 0.16;
 /// Slip in the pour, as a part of vision's.
 const POUR_PART: f64 = 0.5;
-/// Minutes of holding. The goal's three hours would take two of CI's fifteen minutes.
-const MINUTES: u64 = 40;
+/// In `check`, minutes of holding: the goal's three hours would take two of CI's fifteen minutes.
+pub const MINUTES: u64 = 40;
 
-pub fn bars() -> anyhow::Result<Vec<Bar>> {
-    let options = Options { minutes: MINUTES, ..Options::default() };
-    let outcome = learn::run(&options, &|_, _| ())?;
+/// Fails if a scene cannot be made.
+pub fn bars(options: &Options, progress: Progress) -> anyhow::Result<Vec<Bar>> {
+    let outcome = learn::run(options, progress)?;
     let (score, lead) = (&outcome.score, outcome.score.first.lead());
     let (slip, holding) = (&score.slip, &outcome.holding);
     let in_3_h = 3.0 * holding.slip.per_hour.max(holding.warning.per_hour);

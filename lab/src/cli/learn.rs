@@ -4,16 +4,15 @@ use std::process::ExitCode;
 use std::sync::{Mutex, PoisonError};
 
 use anyhow::ensure;
-use tenax_frames::tool::{format::Format, out, progress::Progress};
+use tenax_frames::tool::{out, progress::Progress};
 
-use crate::learn::report::Report;
-use crate::learn::{self, Options};
+use crate::check::learn::bars;
+use crate::learn::Options;
 
 const EXAMPLES: &str = "\
 Examples:
   tenax learn                       7 lessons and 50 held-out trials, and everything else: minutes
-  tenax learn --trials 5 --minutes 1 --fingertips 2
-  tenax learn --report json > learn.json";
+  tenax learn --trials 5 --minutes 1 --fingertips 2";
 
 /// Teach the Hebbian network slip with a camera, and score it
 #[derive(Debug, clap::Args)]
@@ -34,14 +33,11 @@ pub struct Args {
     /// Seed of all random numbers
     #[arg(long, default_value_t = Options::default().seed)]
     seed: u64,
-    /// How to print the report; lab/src/learn/report.rs lists the keys of json
-    #[arg(long, value_enum, default_value_t = Format::Text)]
-    report: Format,
 }
 
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     const MOST: u64 = 1_000;
-    let &Args { seed, trials, minutes, lifts, fingertips, .. } = args;
+    let &Args { seed, trials, minutes, lifts, fingertips } = args;
     ensure!(trials >= 1, "--trials 0: at least one held-out trial is needed");
     for (name, count) in
         [("trials", trials), ("minutes", minutes), ("lifts", lifts), ("fingertips", fingertips)]
@@ -50,7 +46,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     }
     let bar: Mutex<Option<(String, Progress)>> = Mutex::new(None);
     let options = Options { seed, trials, minutes, lifts, fingertips };
-    let outcome = learn::run(&options, &|what, part| {
+    let bars = bars(&options, &|what, part| {
         // A bar that a panicking thread left is still a bar.
         let mut bar = bar.lock().unwrap_or_else(PoisonError::into_inner);
         if bar.as_ref().is_none_or(|(before, _)| before != what) {
@@ -60,6 +56,6 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
             progress.at(part);
         }
     })?;
-    out::unless_closed(args.report.show(&Report::of(&outcome)))?;
+    out::unless_closed(bars.iter().try_for_each(|bar| out::say!("{bar}")))?;
     Ok(ExitCode::SUCCESS)
 }

@@ -1,8 +1,28 @@
 //! Sessions: a box, an array and a gripper as somebody set them up on one day.
 
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
-use tenax_sim::array::material::{Ends, HELD_OUT, Material, SEEN};
-use tenax_sim::labelled::Part;
+use serde::Serialize;
+
+use super::material::{Ends, HELD_OUT, Material, SEEN};
+
+/// Part of a data set that a session belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Part {
+    Train,
+    Validation,
+    Test,
+}
+
+impl Part {
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Train => "train",
+            Self::Validation => "validation",
+            Self::Test => "test",
+        }
+    }
+}
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sizes {

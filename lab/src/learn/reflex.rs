@@ -25,8 +25,6 @@ pub struct Reflexed {
     pub secured_s: f64,
     /// Sunk in the end, mm, with the skin's give under the load.
     pub distance_mm: f64,
-    /// Force of each finger in the end, N.
-    pub grip_n: f64,
 }
 
 /// One of each judge, with the same chance.
@@ -79,11 +77,10 @@ fn three(
 }
 
 fn reflexed(truth: &Truth, from_s: f64) -> Reflexed {
-    let mut reflexed = Reflexed { secured_s: 0.0, distance_mm: 0.0, grip_n: 0.0 };
+    let mut reflexed = Reflexed { secured_s: 0.0, distance_mm: 0.0 };
     let mut last_s = from_s;
     for row in truth.trace.iter().filter(|row| row.t_s >= from_s) {
         reflexed.distance_mm += row.slide_mm_s * (row.t_s - last_s);
-        reflexed.grip_n = row.grip_n;
         last_s = row.t_s;
         if row.slide_mm_s.abs() > FLOOR_MM_S {
             reflexed.secured_s = row.t_s - from_s;

@@ -1,13 +1,11 @@
-//! The figures of a fingertip's learning: for programs the keys of [`Report`].
-
-use serde::Serialize;
+//! The figures of a fingertip's learning.
 
 use super::Outcome;
 use super::reflex::{Reflexed, Three};
 use super::trial::{Trial, Word};
 
 /// Mean, standard deviation and least of a sample; zeros of none.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Spread {
     pub mean: f64,
     pub sd: f64,
@@ -34,8 +32,6 @@ pub struct Words {
     pub said_s: Vec<Option<f64>>,
     /// Lead over the camera in each trial in which both reported, s.
     pub lead_s: Vec<f64>,
-    /// Lead over a camera without delay, s.
-    pub lead_no_delay_s: Vec<f64>,
     /// Trials whose slip was not reported.
     pub missed: u64,
     /// Trials with a report where nothing slipped.
@@ -52,7 +48,6 @@ impl Words {
         }
         let Some((seen, said_s)) = trial.first_seen().zip(said_s) else { return };
         self.lead_s.push(seen.arrives_s - said_s);
-        self.lead_no_delay_s.push(seen.t_s - said_s);
     }
 
     pub fn lead(&self) -> Spread {
@@ -64,8 +59,6 @@ impl Words {
 #[derive(Clone, Debug, Default)]
 pub struct Score {
     pub trials: u64,
-    /// First report of the camera, s after the lift began.
-    pub vision_s: Vec<f64>,
     /// The first place lets go, and all of it slides, s after the lift began.
     pub micro_s: Vec<f64>,
     pub macro_s: Vec<f64>,
@@ -89,74 +82,18 @@ impl Score {
                 score.direction_wrong +=
                     u64::from(trial.direction(&up) <= 0.0) + u64::from(trial.direction(&down) >= 0.0);
             }
-            score.vision_s.extend(trial.first_seen().map(|seen| seen.arrives_s - trial.lift_s));
         }
         score
     }
 }
 
-/// One kind of word of the finger.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub struct Said {
-    /// First report, s after the lift began, mean.
-    pub said_s_mean: f64,
-    /// Lead over the camera, and over one without delay, s.
-    pub lead_s: Spread,
-    pub lead_s_no_delay: Spread,
-    /// Trials whose slip was not reported.
-    pub missed: u64,
-    /// False alarms an hour of holding.
-    pub false_per_hour: f64,
-    /// Lead over the camera with equal weights, s, mean.
-    pub equal_weights_lead_s: f64,
-}
-
-impl Said {
-    fn of(words: &Words, equal: &Words, false_per_hour: f64) -> Self {
-        Self {
-            said_s_mean: Spread::of(&words.said_s.iter().copied().flatten().collect::<Vec<_>>()).mean,
-            lead_s: words.lead(),
-            lead_s_no_delay: Spread::of(&words.lead_no_delay_s),
-            missed: words.missed,
-            false_per_hour,
-            equal_weights_lead_s: equal.lead().mean,
-        }
-    }
-}
-
-#[derive(Clone, Debug, Serialize)]
-pub struct Report {
-    /// Held-out trials.
-    pub trials: u64,
-    /// First report of the camera, s after the lift began, mean.
-    pub vision_first_s_mean: f64,
-    /// The first place lets go, and all of it slides, s after the lift began, means.
-    pub micro_onset_s_mean: f64,
-    pub macro_onset_s_mean: f64,
-    /// Slip or a warning, whichever comes first; slip alone, which the films give.
-    pub first: Said,
-    pub slip: Said,
-    /// False warnings, which shear gives, an hour of holding.
-    pub warnings_false_per_hour: f64,
-    pub holding_hours: f64,
-    /// The reflex triggered by each judge, in lifts and in pours.
-    pub lifts: [Told; 3],
-    pub pours: [Told; 3],
-    /// Slips, up or down, with the wrong direction of o2.
-    pub direction_wrong: u64,
-    pub fingertips: Fingertips,
-}
-
 /// Means of the runs in which one judge triggered the reflex.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug)]
 pub struct Told {
-    pub judge: &'static str,
     /// The object's last motion along the hand, s from the beginning of the lift.
     pub secured_s: f64,
     /// Sunk in the end, mm.
     pub distance_mm: f64,
-    /// Force of each finger in the end, N.
-    pub grip_n: f64,
 }
 
 /// In the order of [`JUDGES`](super::reflex::JUDGES).
@@ -165,49 +102,8 @@ pub fn told(runs: &[Three]) -> [Told; 3] {
         let mean = |of: fn(&Reflexed) -> f64| {
             Spread::of(&runs.iter().map(|three| of(&three[n])).collect::<Vec<_>>()).mean
         };
-        Told {
-            judge: ["touch", "vision", "bound"][n],
-            secured_s: mean(|run| run.secured_s),
-            distance_mm: mean(|run| run.distance_mm),
-            grip_n: mean(|run| run.grip_n),
-        }
+        Told { secured_s: mean(|run| run.secured_s), distance_mm: mean(|run| run.distance_mm) }
     })
-}
-
-/// Random fingertips.
-#[derive(Clone, Debug, Serialize)]
-pub struct Fingertips {
-    pub count: usize,
-    pub trials: u64,
-    /// The mean lead of the worst of them, s. Null if one missed a slip or reported a direction wrongly, or there are none.
-    pub worst_lead_s: Option<f64>,
-    /// Trials whose slip was not reported.
-    pub missed: u64,
-}
-
-impl Report {
-    pub fn of(outcome: &Outcome) -> Self {
-        let Outcome { score, equal, holding, others, .. } = outcome;
-        Self {
-            trials: score.trials,
-            vision_first_s_mean: Spread::of(&score.vision_s).mean,
-            micro_onset_s_mean: Spread::of(&score.micro_s).mean,
-            macro_onset_s_mean: Spread::of(&score.macro_s).mean,
-            first: Said::of(&score.first, &equal.first, holding.any.per_hour),
-            slip: Said::of(&score.slip, &equal.slip, holding.slip.per_hour),
-            warnings_false_per_hour: holding.warning.per_hour,
-            holding_hours: holding.slip.hours,
-            lifts: told(&outcome.lifts),
-            pours: told(&outcome.pours),
-            direction_wrong: score.direction_wrong,
-            fingertips: Fingertips {
-                count: others.len(),
-                trials: others.iter().map(|other| other.trials).sum(),
-                worst_lead_s: outcome.others_work().then(|| outcome.worst_lead_s()).flatten(),
-                missed: others.iter().map(|other| other.first.missed).sum(),
-            },
-        }
-    }
 }
 
 impl Outcome {

@@ -2,11 +2,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use tenax_lab::dataset::session::{Sizes, sessions};
+use tenax_lab::dataset::material::{HELD_OUT, SEEN};
+use tenax_lab::dataset::session::{Part, Sizes, sessions};
 use tenax_lab::dataset::story::Story;
 use tenax_lab::dataset::{Dataset, Plan, collect};
-use tenax_sim::array::material::{HELD_OUT, SEEN};
-use tenax_sim::labelled::Part;
 
 const SMALL: Plan = Plan { seed: 3, sessions: 1 };
 

@@ -3,7 +3,7 @@
 use tenax_hal_shim::detector::DetectorId;
 use tenax_lab::learn::bench::Bench;
 use tenax_lab::learn::finger::Finger;
-use tenax_lab::learn::report::{Report, told};
+use tenax_lab::learn::report::told;
 use tenax_lab::learn::trial::{Setup, Word};
 use tenax_lab::learn::{self, Options};
 use tenax_sim::session::{self, Board};
@@ -47,19 +47,6 @@ fn before_learning_it_says_nothing_and_afterwards_it_sees_micro_slip() {
 
     // Another finger, another object, the same learning.
     assert!(outcome.others_work() && outcome.worst_lead_s() > Some(0.0), "{:?}", outcome.others);
-
-    let json = serde_json::to_value(Report::of(&outcome)).unwrap();
-    let keys = |value: &serde_json::Value| {
-        value.as_object().unwrap().keys().map(String::as_str).collect::<Vec<_>>().join(" ")
-    };
-    assert_eq!(
-        keys(&json),
-        "trials vision_first_s_mean micro_onset_s_mean macro_onset_s_mean first slip warnings_false_per_hour holding_hours lifts \
-         pours direction_wrong fingertips"
-    );
-    // The camera's delay is all that is between the two.
-    let means = ["lead_s", "lead_s_no_delay"].map(|key| json["first"][key]["mean"].as_f64().unwrap());
-    assert!((means[0] - means[1] - 0.053).abs() < 1e-3, "{means:?}");
 }
 
 #[test]

@@ -2,7 +2,6 @@
 
 mod dataset;
 mod emg;
-mod evaluate;
 mod learn;
 mod photoelastic;
 mod table;

@@ -1,10 +1,11 @@
 //! From the detectors' reports to those that are believed and acted on.
 
-use tenax_hal_shim::detector::DetectorSet;
+use tenax_hal_shim::detector::{DetectorId, DetectorSet};
 
 use crate::detectors::Detectors;
+use crate::grip::slide::Heard;
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Verdicts {
     pub said: DetectorSet,
     pub believed: DetectorSet,
@@ -17,8 +18,21 @@ impl Verdicts {
     pub fn of(detectors: &Detectors, off: DetectorSet) -> Self {
         let (slip, incipient) = (detectors.slip(), detectors.incipient());
         let said = slip.or(incipient);
+        if said.is_empty() {
+            return Self::default();
+        }
         let believed = said.and(detectors.credible());
         let acted = believed.without(off);
         Self { said, believed, slip: slip.and(acted), incipient: incipient.and(acted) }
+    }
+
+    /// `loud`: S1 is above its own threshold.
+    pub fn heard(&self, loud: bool) -> Heard {
+        if self.slip.is_empty() {
+            return Heard::default();
+        }
+        let hears = self.slip.contains(DetectorId::S1);
+        let felt = !self.slip.without(DetectorSet::only(DetectorId::S1)).is_empty();
+        Heard { loud: hears && loud, quiet: hears && !loud, felt }
     }
 }

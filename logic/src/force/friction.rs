@@ -2,16 +2,15 @@
 //!
 //! Ft/Fn rises to mu_s and falls as sliding starts. A stroke over a surface shows that peak; S2 is set below
 //! the smallest one. A grasp shows it too: friction is at least the highest ratio that has lasted for 50 ms,
-//! until the finger lets go or a muscle is active. Below [`LEAST_PERMILLE`] nothing slips, below
-//! [`UNLIKELY_PERMILLE`] few objects do: there no kind of sensor alone is believed, unless slip was answered
-//! in this grasp.
+//! until the finger lets go or a muscle is active.
 
 use tenax_hal_shim::detector::{DetectorHealth, DetectorId, Direction};
 use tenax_hal_shim::wire::Forces;
 
 use crate::detectors::{Description, Detector, Said, Sensed, confidence};
 use crate::force::settings::FrictionConfig;
-use crate::grip::lacks::{Lacks, Slides};
+use crate::grip::lacks::Lacks;
+use crate::grip::slide::Carried;
 use crate::latest;
 
 /// Part of S2 below which the warning ends, per mille: beyond the ratio's noise, yet near enough that a load
@@ -23,7 +22,7 @@ const FALL_PERMILLE: u32 = 850;
 /// keeps 0.6 of it.
 pub const LEAST_PERMILLE: u16 = 70;
 /// Static friction of a wet hand on glass, 0.15, less the force sensor's error, per mille.
-const UNLIKELY_PERMILLE: u16 = 130;
+pub const UNLIKELY_PERMILLE: u16 = 130;
 /// Least ratio that counts as friction where one is measured or learned, per mille: less is noise at the
 /// touch.
 pub const FOUND_PERMILLE: u16 = 100;
@@ -70,13 +69,8 @@ impl Shown {
     }
 }
 
-/// Grip that a pulse aims at, as a part of what friction needs, per mille: after a warning; after slip, whose
-/// object has to be stopped too. Chosen on the shipped scenes, seeds 1 to 3, and the default one, seeds 1 to
-/// 6.
-const WARNED_PERMILLE: i32 = 1_250;
-const SLIPPED_PERMILLE: i32 = 1_350;
-/// While the ratio does not show the friction of what slides, which may be lower by a sixth.
-const SLIPS_PERMILLE: i32 = SLIPPED_PERMILLE * 6 / 5;
+/// Grip that a pulse aims at after a warning, as a part of what friction needs, per mille.
+const WARNED_PERMILLE: i32 = 1_080;
 /// Readings over which a growing load is extrapolated: 100 ms.
 const CARRIED_FOR: usize = 8;
 
@@ -86,16 +80,13 @@ pub struct FrictionDetector {
     ratio_permille: Option<u16>,
     stroke: Option<Stroke>,
     shown: Shown,
-    /// Ratio at which the object slid when slip was reported last, per mille.
-    slid: Option<u16>,
     /// Ft of the last 100 ms in which the hand stood still, mN, the newest first. A sliding object carries
     /// less than its load.
     carried: Option<[i32; CARRIED_FOR]>,
     /// Readings since the hand moved.
     still: u8,
-    unlikely: bool,
-    /// Least ratio that a pulse against slip aimed at in this grasp, per mille. None: no slip was answered.
-    aimed: Option<u16>,
+    /// Largest Ft/Fn of the last 50 ms, per mille.
+    of_late: u16,
 }
 
 impl FrictionDetector {
@@ -113,57 +104,37 @@ impl FrictionDetector {
         }
     }
 
-    /// aim x Ft / friction - Fn, mN, for slip and for a warning.
+    /// Load before a slide. None while there is no ratio.
+    pub fn carried(&self) -> Option<Carried> {
+        let carried = self.carried.as_ref()?;
+        let [.., oldest_mn] = *carried;
+        let ft_mn = carried.iter().fold(0, |most, &ft_mn| most.max(ft_mn));
+        Some(Carried { ft_mn, grown_mn: (ft_mn - oldest_mn).max(0) })
+    }
+
+    /// aim x Ft / friction - Fn, mN, for a warning.
     #[must_use]
     #[inline(never)]
-    pub fn lacks(&mut self, config: &FrictionConfig, forces: &Forces, slides: Slides) -> Lacks {
-        let (Some(ratio), Some(carried)) = (forces.ratio_permille, &self.carried) else {
+    pub fn lacks(&self, config: &FrictionConfig, forces: &Forces) -> Lacks {
+        let (Some(ratio), Some([.., oldest_mn])) = (forces.ratio_permille, self.carried) else {
             return Lacks::default();
         };
-        let ratio = i32::from(ratio.max(LEAST_PERMILLE));
-        let [.., oldest_mn] = *carried;
-        let most_mn = carried.iter().fold(0, |most, &ft_mn| most.max(ft_mn));
-        let grows_mn = |ft_mn: i32| (ft_mn - oldest_mn).max(0);
+        let friction = i32::from(ratio.max(LEAST_PERMILLE)).min(self.s2_permille(config).max(1).into());
+        let grows_mn = (forces.ft_mn - oldest_mn).max(0);
         // Forces are below 2^17 mN, so that a product is below 2^31.
-        let lacks = |ft_mn: i32, permille: i32, friction: i32| {
-            Some(ft_mn.min(1 << 17) * permille / friction - forces.fn_mn)
-        };
-        let friction = ratio.min(self.s2_permille(config).max(1).into());
-        let of_late = self.shown.before.iter().fold(ratio, |most, &before| most.max(before.into()));
-        let (slipped, slides_at) = match slides {
-            Slides::Unknown => (SLIPS_PERMILLE, ratio),
-            Slides::Now => (SLIPPED_PERMILLE, ratio),
-            Slides::Again => (SLIPPED_PERMILLE, of_late),
-        };
-        self.slid = match slides {
-            Slides::Unknown => self.slid,
-            Slides::Now => Some(self.slid.map_or(ratio, |slid| ratio.min(slid.into())) as u16),
-            // The pulse was over before the quadrants showed it; static friction is above the sliding one.
-            Slides::Again => {
-                let least = self.shown.before.iter().fold(ratio, |least, &before| least.min(before.into()));
-                Some(self.slid.unwrap_or(least as u16))
-            }
-        };
-        let slip_mn = lacks(most_mn + grows_mn(most_mn), slipped, slides_at);
-        let warning_mn = lacks(forces.ft_mn + grows_mn(forces.ft_mn), WARNED_PERMILLE, friction);
-        Lacks { slip_mn, warning_mn, by_s2: self.s2 }
+        let needed_mn = (forces.ft_mn + grows_mn).min(1 << 17) * WARNED_PERMILLE / friction;
+        Lacks { warning_mn: Some(needed_mn - forces.fn_mn), by_s2: self.s2 }
     }
 
     /// Ft/Fn, per mille, None while there is none. True: S2 warns.
     pub fn process(&mut self, config: &FrictionConfig, ratio_permille: Option<u16>) -> bool {
         self.ratio_permille = ratio_permille;
         let Some(ratio) = ratio_permille else {
-            (self.s2, self.unlikely) = (false, false);
+            (self.s2, self.of_late) = (false, 0);
             self.renew();
             return false;
         };
-        let likely = self.aimed.map_or(UNLIKELY_PERMILLE, |aimed| aimed.min(UNLIKELY_PERMILLE));
-        // An object that has just begun to slide has lost shear.
-        let of_late = self.shown.before.iter().fold(ratio, |most, &before| most.max(before));
-        // An object that begins to be pulled has not shown all of its shear yet.
-        let [.., oldest] = self.shown.before;
-        let grown = if oldest > 0 { ratio.saturating_sub(oldest) } else { 0 };
-        self.unlikely = ratio < LEAST_PERMILLE || of_late + grown < likely;
+        self.of_late = self.shown.before.iter().fold(ratio, |most, &before| before.max(most));
         self.shown.add(ratio);
         if let Some(stroke) = &mut self.stroke {
             stroke.add(ratio);
@@ -173,9 +144,13 @@ impl FrictionDetector {
         self.s2
     }
 
-    /// No single kind of sensor is believed about slip at the last Ft/Fn.
-    pub const fn is_slip_unlikely(&self) -> bool {
-        self.unlikely
+    /// No single kind of sensor is believed about slip at the Ft/Fn of the last 50 ms: few objects slide there, none at less
+    /// than [`LEAST_PERMILLE`]. `has_slid`: one did in this grasp.
+    pub const fn is_slip_unlikely(&self, has_slid: bool) -> bool {
+        match self.ratio_permille {
+            Some(ratio) => ratio < LEAST_PERMILLE || !has_slid && self.of_late < UNLIKELY_PERMILLE,
+            None => false,
+        }
     }
 
     /// S2 in this grasp, per mille: as set or measured, or higher if the grasp has shown more friction.
@@ -186,20 +161,7 @@ impl FrictionDetector {
 
     /// A muscle changes the contact: the friction of this grasp is unknown again.
     pub fn renew(&mut self) {
-        (self.shown, self.slid, self.aimed) = (Shown::default(), None, None);
-    }
-
-    pub fn slips(&mut self) {
-        self.slid = None;
-        if let Some(ratio) = self.ratio_permille {
-            let aims = (i32::from(ratio) * 1_000 / SLIPPED_PERMILLE) as u16;
-            self.aimed = Some(self.aimed.map_or(aims, |aimed| aimed.min(aims)));
-        }
-    }
-
-    /// Ratio at which the object slid in this grasp, per mille, until slip is reported again.
-    pub const fn slid_permille(&self) -> Option<u16> {
-        self.slid
+        self.shown = Shown::default();
     }
 
     pub const fn ratio_permille(&self) -> Option<u16> {
@@ -265,29 +227,6 @@ mod tests {
     }
 
     #[test]
-    fn slip_is_unlikely_below_what_a_wet_hand_has_but_for_what_slid_just_now_or_before_in_this_grasp() {
-        let mut detector = FrictionDetector::default();
-        let unlikely = |detector: &mut FrictionDetector, ratio: u16| {
-            detector.process(&CONFIG, Some(ratio));
-            detector.is_slip_unlikely()
-        };
-        assert_eq!([129, 130, 300].map(|ratio| unlikely(&mut detector, ratio)), [true, false, false]);
-        assert_eq!([70, 69, 70, 70].map(|ratio| unlikely(&mut detector, ratio)), [false, true, false, true]);
-        unlikely(&mut detector, 135);
-        detector.slips();
-        let after = [99; 5].map(|ratio| unlikely(&mut detector, ratio));
-        assert_eq!(after, [false, false, false, true, true]);
-        assert!(!unlikely(&mut detector, 100));
-        detector.renew();
-        assert!(unlikely(&mut detector, 80) && unlikely(&mut detector, 80) && unlikely(&mut detector, 80));
-        assert_eq!([104, 105].map(|ratio| unlikely(&mut detector, ratio)), [true, false]);
-        detector.renew();
-        assert!(unlikely(&mut detector, 100), "a muscle has moved it");
-        assert!(unlikely(&mut detector, 100) && !detector.process(&CONFIG, None));
-        assert!(!detector.is_slip_unlikely(), "nothing is known");
-    }
-
-    #[test]
     fn a_ratio_that_stood_in_this_grasp_is_friction_until_the_finger_lets_go_or_a_muscle_moves_it() {
         let mut detector = FrictionDetector::default();
         let mut after = |ratios: &[Option<u16>]| {
@@ -303,7 +242,7 @@ mod tests {
         assert_eq!(detector.s2_permille(&CONFIG), 300);
     }
 
-    fn lacks_as(slides: Slides, load_mn: i32, shears_mn: &[i32]) -> Lacks {
+    fn lacks(load_mn: i32, shears_mn: &[i32]) -> Lacks {
         let mut detector = FrictionDetector::default();
         let mut lacks = Lacks::default();
         for &ft_mn in shears_mn {
@@ -311,13 +250,9 @@ mod tests {
             detector.carry(Some(ft_mn), false);
             detector.process(&CONFIG, ratio_permille);
             let forces = Forces { fn_mn: load_mn, fx_mn: ft_mn, fy_mn: 0, ft_mn, load_mn, ratio_permille };
-            lacks = detector.lacks(&CONFIG, &forces, slides);
+            lacks = detector.lacks(&CONFIG, &forces);
         }
         lacks
-    }
-
-    fn lacks(load_mn: i32, shears_mn: &[i32]) -> Lacks {
-        lacks_as(Slides::Now, load_mn, shears_mn)
     }
 
     #[test]
@@ -329,19 +264,6 @@ mod tests {
         let expected = (grows[19] + grows[19] - grows[12]) * WARNED_PERMILLE / 300 - 10_000;
         assert!((expected - 10..=expected + 10).contains(&lacks(10_000, &grows).warning_mn.unwrap()));
         assert!(!lacks(10_000, &[1_000; 20]).by_s2);
-    }
-
-    #[test]
-    fn slip_lacks_what_holds_the_load_before_it_at_the_friction_of_now() {
-        // Friction falls from above 0.27 to 0.2: what is carried falls, the load does not.
-        let shears: [i32; 20] = core::array::from_fn(|n| if n < 17 { 2_700 } else { 2_000 });
-        assert_eq!(lacks(10_000, &shears).slip_mn, Some(2_700 * SLIPPED_PERMILLE / 200 - 10_000));
-        let fresh = lacks_as(Slides::Unknown, 10_000, &shears).slip_mn;
-        assert_eq!(fresh, Some(2_700 * SLIPS_PERMILLE / 200 - 10_000));
-        let rests: [i32; 20] = core::array::from_fn(|n| if n < 19 { shears[n] } else { 1_800 });
-        assert_eq!(lacks_as(Slides::Again, 10_000, &rests).slip_mn, lacks(10_000, &shears).slip_mn);
-        let shears: [i32; 20] = core::array::from_fn(|n| if n < 17 { 2_700 } else { 3_000 });
-        assert_eq!(lacks(10_000, &shears).slip_mn, Some(3_300 * SLIPPED_PERMILLE / 300 - 10_000));
     }
 
     #[test]
@@ -378,27 +300,5 @@ mod tests {
             assert_eq!(detector.ratio_permille(), Some(ratio));
             assert_eq!(detector.end_stroke(&CONFIG).map(|measured| measured.mu_s_permille), measured);
         }
-    }
-
-    #[test]
-    fn the_ratio_that_slid_is_the_least_of_a_slip_until_the_next_is_answered() {
-        let mut detector = FrictionDetector::default();
-        let slides = |detector: &mut FrictionDetector, slides: Slides, ratio: u16| {
-            let ft_mn = i32::from(ratio) * 10;
-            detector.carry(Some(ft_mn), false);
-            detector.process(&CONFIG, Some(ratio));
-            let ratio_permille = Some(ratio);
-            let forces =
-                Forces { fn_mn: 10_000, fx_mn: ft_mn, fy_mn: 0, ft_mn, load_mn: 10_000, ratio_permille };
-            let _lacks = detector.lacks(&CONFIG, &forces, slides);
-            detector.slid_permille()
-        };
-        assert_eq!(slides(&mut detector, Slides::Unknown, 250), None);
-        let slid = [250, 200, 220].map(|ratio| slides(&mut detector, Slides::Now, ratio));
-        assert_eq!(slid, [Some(250), Some(200), Some(200)]);
-        detector.slips();
-        assert_eq!(detector.slid_permille(), None);
-        assert_eq!(slides(&mut detector, Slides::Again, 230), Some(200));
-        assert_eq!(slides(&mut detector, Slides::Unknown, 100), Some(200));
     }
 }

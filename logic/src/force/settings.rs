@@ -14,5 +14,5 @@ settings! {
     /// S2 from a stroke or grasp: this part of the friction that was measured
     9 S2OfMuS "s2-of-mu-s-permille" "per mille" [300, 950] = 800 => Number(s2_of_mu_s_permille);
     /// Normal force from which the finger counts as loaded
-    10 Loaded "loaded-mn" "mN" [300, 2_000] = 600 => Number(loaded_mn);
+    10 Loaded "loaded-mn" "mN" [300, 2_000] = 300 => Number(loaded_mn);
 }

@@ -88,15 +88,15 @@ fn reachable(config: &GripConfig, grips: &[Grip], bound: bool) -> BTreeSet<State
                         || reflex.may_close(config, grip);
                     if let Some(to) = next(mode, cause).filter(|_| asked) {
                         mode = to;
-                        reflex.enter(mode, grip);
+                        reflex.enter(mode, grip, None);
                     }
                 }
                 if closes(mode) && reflex.pulse_over(config, mode, slips, grip) {
                     mode = next(mode, Cause::PulseOver).expect("a pulse ends");
-                    reflex.enter(mode, grip);
+                    reflex.enter(mode, grip, None);
                 }
                 closed += u32::from(closes(mode));
-                reflex.tick(mode, grip);
+                reflex.tick(mode, grip, false);
                 let longest = config.slip_frames_max + config.settle_frames;
                 let Reflex { account: Account { blind, .. }, elapsed, .. } = reflex;
                 reached.push((mode as usize, blind, elapsed.min(longest), closed));

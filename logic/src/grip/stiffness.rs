@@ -5,10 +5,15 @@ use crate::latest;
 
 /// Readings over which a rise is taken, 37.5 ms: as long as a pulse, which a shorter span would see in parts.
 const SPAN: usize = 3;
-/// Readings of travel that are kept: 50 ms of dead time, and the span.
-const KEPT: usize = 7;
-/// Readings in which the force does not show the travel yet: a dead time of 30 ms, and the time of a reading.
-const NOT_FELT: usize = 3;
+/// Longest dead time, 100 ms.
+const DEAD: usize = 8;
+/// Readings of travel that are kept: the longest dead time, and the span.
+const KEPT: usize = DEAD + SPAN;
+/// Readings in which the force does not show the travel yet, before a closing has shown them: a dead time of 30 ms, and the
+/// time of a reading.
+const NOT_FELT: u8 = 3;
+/// Part of the rise after a stop that shows when the dead time is over, per mille.
+const RISEN_PERMILLE: i32 = 850;
 const NOISE_MN: i32 = 60;
 /// Least travel whose rise tells anything: 1.5 ms at full duty.
 const TRAVEL_MIN: u32 = 3_000;
@@ -17,7 +22,7 @@ const FRACTION: u32 = 4;
 const MOST: u32 = 4_000 << FRACTION;
 
 /// Travel is in per mille of duty times frames.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub struct Stiffness {
     /// Force that a frame at full duty adds, mN with [`FRACTION`] bits; 0 before the first closing.
     mn_a_frame: u32,
@@ -26,6 +31,26 @@ pub struct Stiffness {
     travel: u32,
     before: [u32; KEPT],
     loads_mn: [i32; SPAN],
+    /// Readings in which the force does not show the travel yet.
+    not_felt: u8,
+    /// Loads since the motor stopped, mN, and how many.
+    stopped_mn: [i32; DEAD + 1],
+    stopped: u8,
+}
+
+impl Default for Stiffness {
+    fn default() -> Self {
+        Self {
+            mn_a_frame: 0,
+            steepest: 0,
+            travel: 0,
+            before: [0; KEPT],
+            loads_mn: [0; SPAN],
+            not_felt: NOT_FELT,
+            stopped_mn: [0; DEAD + 1],
+            stopped: 0,
+        }
+    }
 }
 
 impl Stiffness {
@@ -38,6 +63,7 @@ impl Stiffness {
     pub fn feel(&mut self, load_mn: Option<i32>) {
         let travel = core::mem::take(&mut self.travel);
         latest::push(&mut self.before, travel);
+        self.time(load_mn.unwrap_or(0));
         let Some(load_mn) = load_mn else {
             (self.mn_a_frame, self.steepest, self.loads_mn) = (0, 0, [0; SPAN]);
             return;
@@ -58,10 +84,35 @@ impl Stiffness {
         }
     }
 
+    /// The dead time, by the load's rise after the motor has stopped.
+    fn time(&mut self, load_mn: i32) {
+        let [now, before, ..] = self.before;
+        if now > 0 {
+            self.stopped = 0;
+            return;
+        }
+        if before > 0 {
+            self.stopped = 1;
+            self.stopped_mn[0] = self.loads_mn[0];
+        }
+        let n = usize::from(self.stopped);
+        let Some(slot) = self.stopped_mn.get_mut(n).filter(|_| n > 0) else { return };
+        (*slot, self.stopped) = (load_mn, self.stopped + 1);
+        let [first_mn, .., last_mn] = self.stopped_mn;
+        let rise_mn = last_mn - first_mn;
+        if n == DEAD && rise_mn > 2 * NOISE_MN && rise_mn > last_mn / 16 {
+            let risen = |&mn: &i32| {
+                i64::from(mn - first_mn) * 1_000 >= i64::from(rise_mn) * i64::from(RISEN_PERMILLE)
+            };
+            // A reading's travel is not measured before the next.
+            self.not_felt = self.stopped_mn.iter().position(risen).map_or(NOT_FELT, |after| after as u8 + 1);
+        }
+    }
+
     /// Travel that adds this force, mN, less the travel that the force does not show yet. None before a
     /// closing has shown the stiffness.
     pub fn travel_for(&self, lacks_mn: i32) -> Option<u32> {
-        let coming: u32 = self.before[..NOT_FELT].iter().sum::<u32>() + self.travel;
+        let coming = self.before.iter().take(self.not_felt.into()).sum::<u32>() + self.travel;
         let lacks_mn = lacks_mn.clamp(0, 1 << 17).unsigned_abs();
         (lacks_mn * (1_000 << FRACTION))
             .checked_div(self.mn_a_frame)

@@ -3,6 +3,7 @@
 use tenax_hal_shim::detector::{DetectorHealth, DetectorId, Direction};
 
 use crate::detectors::{Description, Detector, Said, Sensed, confidence};
+use crate::vibration::Vibration;
 use crate::vibration::settings::VibrationConfig;
 
 #[derive(Clone, Copy, Debug, Default)]
@@ -18,7 +19,8 @@ impl Detector for S1 {
     fn step(&mut self, _config: &VibrationConfig, sensed: &Sensed<'_>) -> Option<Said> {
         self.level = sensed.vibration.level;
         self.health = if sensed.vibration_known { DetectorHealth::Working } else { DetectorHealth::Blind };
-        Some(Said { slip: sensed.vibration.s1, incipient: sensed.vibration.slides })
+        let Vibration { s1, quiet_slip, slides, .. } = sensed.vibration;
+        Some(Said { slip: s1 || quiet_slip, incipient: slides })
     }
 
     fn describe(&self, config: &VibrationConfig) -> Description {

@@ -45,6 +45,11 @@ pub struct Noise {
 }
 
 impl Noise {
+    /// What the films hear is no slip: the threshold is twice as much, until they are quieter.
+    pub fn refute(&mut self, envelopes: &[i32; PVDF_COUNT]) {
+        self.empty = envelopes.iter().fold(self.empty, |most, &now| most.max(now));
+    }
+
     /// One slow frame. `set`: S1's threshold in the settings, samples.
     pub fn step(&mut self, films: &[Film; PVDF_COUNT], set: u16, empty_hand: bool) {
         let set = i32::from(set) << Q;

@@ -16,7 +16,6 @@ use tenax_logic::setting::SettingId;
 use tenax_logic::store::payload;
 use tenax_scene::plant::{Pins, Plant};
 use tenax_sim::board::simulated::{Stepper, frames_in, seconds_of};
-use tenax_sim::recipe::Kind;
 use tenax_sim::replay::{Recipe, Recording, ReplayPlant};
 
 use crate::columns::{self, Kept};

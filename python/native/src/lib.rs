@@ -3,7 +3,6 @@
 mod columns;
 mod detect;
 mod fingertip;
-mod labelled;
 mod vision;
 mod world;
 
@@ -104,7 +103,5 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(detect::mlp, module)?)?;
     module.add_function(wrap_pyfunction!(detect::photoelastic, module)?)?;
     module.add_function(wrap_pyfunction!(detect::features, module)?)?;
-    module.add_function(wrap_pyfunction!(labelled::labelled_recordings, module)?)?;
-    module.add_function(wrap_pyfunction!(labelled::edges_of, module)?)?;
     Ok(())
 }

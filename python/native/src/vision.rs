@@ -26,13 +26,14 @@ impl Camera {
         Self(camera)
     }
 
-    /// A picture (240 x 320 x 3, red first) that was taken at `taken_ms`.
+    /// A picture (240 x 320 x 3, red first) that was taken at `taken_ms` and comes at `now_ms`.
     fn picture<'py>(
         &mut self,
         py: Python<'py>,
         picture: PyReadonlyArray3<'py, u8>,
         learn: bool,
         taken_ms: u32,
+        now_ms: u32,
     ) -> PyResult<Bound<'py, PyDict>> {
         let picture = picture.as_array();
         if picture.dim() != (HEIGHT, WIDTH, 3) {
@@ -46,7 +47,7 @@ impl Camera {
             .collect();
         let summary = py.detach(|| {
             let frame = Frame::from_gbrp(&planes).expect("its length is a picture's");
-            self.0.picture(&frame, learn, taken_ms, taken_ms)
+            self.0.picture(&frame, learn, taken_ms, now_ms)
         });
         told(py, &summary)
     }
@@ -68,7 +69,6 @@ impl Camera {
 
 const fn why(blind: Blind) -> &'static str {
     match blind {
-        Blind::Lost(_) => "lost",
         Blind::Late(_) => "late",
         Blind::Frozen(_) => "frozen",
         Blind::Covered => "covered",

@@ -158,7 +158,6 @@ fn centred_mean(values: &[f64], width: usize) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::recipe::Kind;
 
     fn rig(ratio_of: impl Fn(f64) -> f64) -> (Recording, Recipe) {
         let mut csv = String::from("t,n,s\n");

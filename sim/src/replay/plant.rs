@@ -11,10 +11,10 @@ use tenax_logic::emg::model::EmgModel;
 use tenax_scene::plant::{Calibrated, Pins, Plant};
 
 use super::filter::{Pass, pass};
+use super::library::Named;
 use super::recipe::{ForceMap, HoldForce, Map, RemoveOffset};
 use super::resample::Grid;
 use super::{Recipe, Recording};
-use crate::recipe::Named;
 
 /// Noise on every pin, mV rms: half a code (assumed). One code for ever would be a broken sensor.
 const PIN_NOISE_MV: f64 = 0.4;
@@ -71,7 +71,7 @@ pub struct ReplayPlant {
 }
 
 impl ReplayPlant {
-    pub fn of(recording: &Recording, named: Option<&Named<Recipe>>, seed: u64) -> anyhow::Result<Self> {
+    pub fn of(recording: &Recording, named: Option<&Named>, seed: u64) -> anyhow::Result<Self> {
         match named {
             Some(Named { name, recipe }) => {
                 Self::new(recording, recipe, seed).with_context(|| format!("recipe {name}"))

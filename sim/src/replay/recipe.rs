@@ -1,12 +1,17 @@
 //! A recipe: the analogue front end between a recording's columns and this board's pins (`docs/recipes.md`).
 
+use std::fmt::Display;
+use std::ops::Range;
+
 use serde::Deserialize;
 use tenax_hal_shim::channel;
 use toml::Spanned;
 
 use super::meaning::Meaning;
 use crate::input::Table;
-use crate::recipe::{self, Checked, Kind, if_within, within};
+
+/// Where in the file it is wrong, and how.
+pub(super) type Checked = Result<(), (Range<usize>, String)>;
 
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -20,7 +25,7 @@ pub struct Recipe {
     #[serde(default)]
     pub time: Time,
     /// How long the first row is held before the recording begins, s: the fingertip's filters and baselines settle in it.
-    #[serde(default = "recipe::one")]
+    #[serde(default = "one")]
     pub lead_in_s: Spanned<f64>,
     /// How long the last row is held after the recording ends, s.
     #[serde(default = "default_lead_out_s")]
@@ -108,7 +113,7 @@ pub struct ForceMap {
     pub normal: String,
     pub shear_x: String,
     pub shear_y: Option<String>,
-    #[serde(default = "recipe::one")]
+    #[serde(default = "one")]
     pub scale: Spanned<f64>,
     /// Corner of a second-order Butterworth low-pass, Hz: the rubber of the tilting element.
     pub low_pass_hz: Option<Spanned<f64>>,
@@ -146,6 +151,11 @@ pub struct HoldPins {
     pub why: String,
 }
 
+/// A factor of 1, for a value that is not given: it has no place in the file, and is never wrong.
+fn one() -> Spanned<f64> {
+    Spanned::new(0..0, 1.0)
+}
+
 fn default_lead_out_s() -> Spanned<f64> {
     Spanned::new(0..0, 0.2)
 }
@@ -180,23 +190,14 @@ impl Recipe {
     pub fn maps_a_muscle(&self) -> bool {
         self.map.iter().any(Map::is_muscle)
     }
-}
 
-impl Kind for Recipe {
-    const BUILTIN: &'static [(&'static str, &'static str)] = &[
-        ("emg_bursts", include_str!("../../recipes/emg_bursts.toml")),
-        ("emg_two_channel", include_str!("../../recipes/emg_two_channel.toml")),
-        ("friction_rig", include_str!("../../recipes/friction_rig.toml")),
-        ("pvdf", include_str!("../../recipes/pvdf.toml")),
-    ];
-
-    fn applies_to(&self) -> &[Spanned<String>] {
-        &self.applies_to
-    }
-
-    fn check(&self) -> Checked {
+    pub(super) fn check(&self) -> Checked {
         let named = self.meaning.iter().map(|meaning| &meaning.named);
-        recipe::check_patterns(self.applies_to.iter().chain(named))?;
+        for pattern in self.applies_to.iter().chain(named) {
+            glob::Pattern::new(pattern.get_ref()).map_err(|error| {
+                (pattern.span(), format!("`{}` is no pattern: {error}", pattern.get_ref()))
+            })?;
+        }
         if let Some(table) = &self.table {
             table.get_ref().check().map_err(|what| (table.span(), what))?;
         }
@@ -219,7 +220,9 @@ impl Kind for Recipe {
             claim(&mut taken, &pins.channels)?;
         }
         if let Some(force) = &self.force {
-            recipe::check_scale(&force.scale)?;
+            if !force.scale.get_ref().is_finite() || *force.scale.get_ref() == 0.0 {
+                return Err((force.scale.span(), "scale must be a number other than 0".into()));
+            }
             corner(&force.low_pass_hz, "low_pass_hz")?;
         }
         match (&self.force, &self.hold.force) {
@@ -268,6 +271,25 @@ impl HoldForce {
         }
         Ok(())
     }
+}
+
+pub(super) fn matches<'p>(patterns: impl IntoIterator<Item = &'p Spanned<String>>, file_name: &str) -> bool {
+    let matches = |pattern: &Spanned<String>| {
+        glob::Pattern::new(pattern.get_ref()).is_ok_and(|pattern| pattern.matches(file_name))
+    };
+    patterns.into_iter().any(matches)
+}
+
+fn within<T: PartialOrd + Display>(value: &Spanned<T>, name: &str, low: T, high: T) -> Checked {
+    let own = value.get_ref();
+    if *own >= low && *own <= high {
+        return Ok(());
+    }
+    Err((value.span(), format!("{name} is {own}; {low} to {high} is allowed")))
+}
+
+fn if_within<T: PartialOrd + Display>(value: &Option<Spanned<T>>, name: &str, low: T, high: T) -> Checked {
+    value.as_ref().map_or(Ok(()), |value| within(value, name, low, high))
 }
 
 fn corner(value: &Option<Spanned<f64>>, name: &str) -> Checked {

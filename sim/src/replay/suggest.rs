@@ -100,7 +100,6 @@ fn unit(values: &[f64]) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::recipe::Kind;
     use crate::replay::Recipe;
 
     #[test]

@@ -6,8 +6,8 @@ use serde::Serialize;
 use tenax_hal_shim::detector::DetectorId;
 
 use super::wearer::Wearer;
-use crate::recipe::Named;
 use crate::replay::facts::{Crest, crest, doubts, muscle_onset_s};
+use crate::replay::library::Named;
 use crate::replay::meaning::{Meaning, Motion};
 use crate::replay::{Recipe, Recording};
 use crate::timeline::Timeline;
@@ -83,7 +83,7 @@ pub struct Muscle {
 impl Replay {
     pub fn new(
         recording: &Recording,
-        named: Option<&Named<Recipe>>,
+        named: Option<&Named>,
         lead_in_s: f64,
         timeline: &Timeline,
         wearer: &Wearer,

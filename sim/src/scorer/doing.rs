@@ -11,19 +11,6 @@ pub enum Doing {
     Pour,
     Move,
     Disturb,
-    Unknown,
-}
-
-impl Doing {
-    pub fn named(name: &str) -> Self {
-        match name {
-            "hold" => Self::Hold,
-            "pour" => Self::Pour,
-            "move" | "pick" => Self::Move,
-            "disturb" => Self::Disturb,
-            _ => Self::Unknown,
-        }
-    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]

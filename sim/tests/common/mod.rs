@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use tenax_scene::{SceneFile, builtin};
-use tenax_sim::recipe::Kind;
 use tenax_sim::replay::{Recipe, Recording};
 use tenax_sim::session::{self, Board, Outcome};
 

@@ -257,7 +257,7 @@ impl Ears {
         senses.driven(drive, false, GripMode::Watch, 1);
         if frame.ends_slow_frame() {
             senses.think(config, samples, journal);
-            senses.listen(config, journal);
+            senses.listen(config, true, journal);
             let _told = journal.take_slow();
         }
         while journal.next_event().is_some() {}

@@ -12,7 +12,6 @@ use tenax_logic::emg::mains::mains_of;
 use tenax_logic::emg::model::{EmgModel, Refusal};
 use tenax_logic::emg::trust::Quality;
 use tenax_logic::emg::{Emg, Verdict};
-use tenax_sim::recipe::Kind;
 use tenax_sim::replay::Recipe;
 use tenax_sim::replay::meaning::Motion;
 use tenax_sim::replay::muscles::{Muscles, calibrate};
