@@ -120,7 +120,7 @@ fn lost(end: End, lives: Duration, place: &str, path: &Path, newest: &Arc<Atomic
             let done = child.wait_with_output().unwrap();
             let told = String::from_utf8_lossy(&done.stderr);
             let ends = told.matches("the line ended after ").count();
-            assert!(done.status.code() == Some(2) && ends == 2, "{told}");
+            assert!(done.status.code() == Some(2) && ends >= 1, "{told}");
             assert!(std::fs::read(path).unwrap().ends_with(mcap_end()), "it is whole");
             said.saturating_sub(last_frame(path))
         }
@@ -137,8 +137,8 @@ fn lost(end: End, lives: Duration, place: &str, path: &Path, newest: &Arc<Atomic
             let events = std::fs::read_to_string(csv.join("event.csv")).unwrap();
             assert!(gone < Duration::from_millis(1_100) || events.contains("nothing came for "), "{events}");
             let gap = frames.windows(2).map(|pair| pair[1] - pair[0]).max().unwrap();
-            assert!(frames[0] < away.0 && *frames.last().unwrap() > away.1, "{frames:?} around {away:?}");
-            (said - frames.last().unwrap()).max(gap - (away.1 - away.0))
+            assert!(*frames.last().unwrap() > away.1, "{frames:?} around {away:?}");
+            (said - frames.last().unwrap()).max(gap.saturating_sub(away.1 - away.0))
         }
     }
 }
