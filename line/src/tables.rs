@@ -31,7 +31,11 @@ pub fn wiring() -> String {
     );
     for (n, channel) in CHANNELS.iter().enumerate() {
         let Channel { name, rest_mv, low_mv, high_mv, .. } = channel;
-        let pin = &SCAN[rank(channel)];
+        let pin = &SCAN[match channel.input {
+            Input::Direct { rank } => rank.into(),
+            Input::SwitchA { .. } => RANK_SWITCH_A,
+            Input::SwitchB { .. } => RANK_SWITCH_B,
+        }];
         page += &format!(
             "| `{name}` | {} | {} | IN{} | {rest_mv} | {low_mv} | {high_mv} |\n",
             input(n),
@@ -40,14 +44,6 @@ pub fn wiring() -> String {
         );
     }
     page
-}
-
-fn rank(channel: &Channel) -> usize {
-    match channel.input {
-        Input::Direct { rank } => rank.into(),
-        Input::SwitchA { .. } => RANK_SWITCH_A,
-        Input::SwitchB { .. } => RANK_SWITCH_B,
-    }
 }
 
 /// The input of a channel: `PA0`, or `switch A, 3`.

@@ -324,18 +324,3 @@ pub fn command(path: &str) -> Option<Down> {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_path_is_a_command_or_none() {
-        let set = Down::Set(Setting { id: SettingId::S1.number(), value: 120 });
-        assert_eq!(command("/set/s1-mv/120"), Some(set));
-        assert_eq!(command("/zero"), Some(Down::Zero));
-        for wrong in ["/", "/set/s1-mv", "/set/s1/120", "/set/s1-mv/x", "/drive"] {
-            assert_eq!(command(wrong), None, "{wrong}");
-        }
-    }
-}

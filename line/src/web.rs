@@ -194,16 +194,3 @@ fn words(path: &str, stem: &str) -> Option<String> {
     let act = path.strip_prefix(stem).filter(|act| act.len() <= ACT_MAX && act.chars().all(is_word))?;
     Some(act.replace('/', " "))
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_path_is_words_or_none() {
-        let act = |path| words(path, "/bench/");
-        assert_eq!(act("/bench/tap/pvdf_3").as_deref(), Some("tap pvdf_3"));
-        assert_eq!((act("/bench/g%0ao"), act("/zero")), (None, None));
-        assert_eq!(words("/play/+5", "/play/").as_deref(), Some("+5"));
-    }
-}

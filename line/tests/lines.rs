@@ -13,21 +13,28 @@ use tenax_line::cli::monitor;
 
 use crate::serving::{command, tenax};
 
-fn frame(sequence: u16) -> Vec<u8> {
-    let message = Up::Counters(Counters { frames: u32::from(sequence), ..Counters::default() });
-    encode(sequence, &message, &mut [0; FRAME_MAX]).expect("it fits").to_vec()
+fn frame(sequence: u16, message: &Up) -> Vec<u8> {
+    encode(sequence, message, &mut [0; FRAME_MAX]).expect("it fits").to_vec()
+}
+
+fn counters(sequence: u16) -> Vec<u8> {
+    let frames = u32::from(sequence);
+    frame(sequence, &Up::Counters(Counters { frames, ..Counters::default() }))
 }
 
 #[test]
 fn gaps_and_random_bytes_are_named_and_survived() {
     let mut noise = vec![0; 1 << 20];
     ChaCha8Rng::seed_from_u64(1).fill(&mut noise[..]);
-    let bytes = [&frame(0)[5..], &frame(1), &frame(2), &frame(4), &noise, &[0], &frame(5)].concat();
+    // Two are missing over the wrap of the numbers, one after it; a start begins with any number.
+    let hello = frame(700, &Up::Hello { frame_hz: 2_000, after: None });
+    let sound = [65_534, 1, 2, 4].map(counters).concat();
+    let bytes = [&counters(65_533)[5..], &sound, &noise, &[0], &counters(5), &hello].concat();
     let up = Box::new(Cursor::new(bytes));
     let (mut client, mut out) = (Client::from(Line { up, down: None }), Vec::new());
     assert_eq!(monitor::watch(&mut client, &mut out).unwrap().kind(), ErrorKind::UnexpectedEof);
     let Counts { messages, bad_frames, missed } = client.counts();
-    assert_eq!((messages, missed), (4, 1), "a CRC-32 lets one in four billion through");
+    assert_eq!((messages, missed), (6, 3), "a CRC-32 lets one in four billion through");
     assert!(bad_frames > 3_000, "{bad_frames}");
     let text = String::from_utf8(out).unwrap();
     assert!(text.contains("    2 Counters { frames: 2,"), "{text}");

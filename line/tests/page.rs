@@ -196,7 +196,12 @@ fn only_pages_of_this_address_may_ask_and_without_control_they_change_nothing() 
     assert_eq!(status("GET", "/", "Host: evil.example\r\n"), 403);
     assert_eq!(status("GET", "/", &format!("Host: {own}\r\n")), 200);
     web.until("a bench", |event| event["bench"].is_array());
-    assert_eq!(["/bench/g", "/zero", "/drive"].map(|path| web.post(path).0), [403, 403, 404]);
+    let posts = |paths: &[&str]| paths.iter().map(|path| web.post(path).0).collect::<Vec<_>>();
+    assert_eq!(posts(&["/bench/tap/pvdf_3", "/zero", "/calibrate", "/set/s1-mv/120"]), [403; 4]);
+    assert_eq!(
+        posts(&["/drive", "/bench/g%0ao", "/set/s1-mv", "/set/s1/120", "/set/s1-mv/x", "/"]),
+        [404; 6]
+    );
     web.selftest("fsr_a");
 
     let alone = Web::start(&["--port", &served.place, "--control"]);

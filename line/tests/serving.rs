@@ -3,6 +3,7 @@
 use std::io;
 use std::net::{Shutdown, TcpListener, TcpStream};
 use std::process::{Command, Output};
+use std::str::FromStr;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard};
 use std::thread::{self, JoinHandle};
@@ -39,23 +40,35 @@ pub fn calm() -> RwLockReadGuard<'static, ()> {
     LOAD.read().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// A line to the place. `pass` passes what one connection after the other sends on to the place; then that connection is cut.
-pub fn relay(place: &str, mut pass: impl FnMut(TcpStream, TcpStream) + Send + 'static) -> String {
+/// A line to the place on a port that is free.
+pub fn relay(place: &str, pass: impl FnMut(TcpStream, TcpStream) -> bool + Send + 'static) -> String {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
-    let (own, place) = (listener.local_addr().unwrap(), place.trim_start_matches("tcp:").to_owned());
-    thread::spawn(move || {
-        for near in listener.incoming() {
-            let (near, Ok(far)) = (near.unwrap(), TcpStream::connect(&place)) else { return };
-            let (mut up, mut out) = (far.try_clone().unwrap(), near.try_clone().unwrap());
-            thread::spawn(move || {
-                let _ended = io::copy(&mut up, &mut out);
-                out.shutdown(Shutdown::Both)
-            });
-            pass(near.try_clone().unwrap(), far);
-            let _gone = near.shutdown(Shutdown::Both);
-        }
-    });
+    let (own, place) = (listener.local_addr().unwrap(), place.to_owned());
+    thread::spawn(move || relay_on(listener, &place, pass));
     format!("tcp:{own}")
+}
+
+/// `pass` passes what one connection after the other sends on to the place; then that connection is cut. False: it is the last one.
+pub fn relay_on(listener: TcpListener, place: &str, mut pass: impl FnMut(TcpStream, TcpStream) -> bool) {
+    for near in listener.incoming() {
+        let far = TcpStream::connect(place.trim_start_matches("tcp:"));
+        let (near, Ok(far)) = (near.unwrap(), far) else { return };
+        let (mut up, mut out) = (far.try_clone().unwrap(), near.try_clone().unwrap());
+        thread::spawn(move || {
+            let _ended = io::copy(&mut up, &mut out);
+            out.shutdown(Shutdown::Both)
+        });
+        let goes_on = pass(near.try_clone().unwrap(), far);
+        let _gone = near.shutdown(Shutdown::Both);
+        if !goes_on {
+            return;
+        }
+    }
+}
+
+/// A number that whoever runs the tests asks for.
+pub fn asked<N: FromStr>(name: &str) -> Option<N> {
+    std::env::var(name).ok().and_then(|text| text.parse().ok())
 }
 
 /// The rig's scene on a board that trusts its line, so that nobody at the hand has to consent.

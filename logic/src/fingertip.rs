@@ -177,6 +177,7 @@ impl Fingertip {
     fn may_relax(&self) -> bool {
         self.config.grip.may_relax(self.config.no_wearer)
             && self.senses.all_ready(&self.config)
+            && self.senses.force_sensor().doubted() == 0
             && !self.senses.gate.is_active()
             && self.link.drive().is_none()
             && self.behaviour.is_none()

@@ -3,8 +3,10 @@
 mod common;
 
 mod behaviours;
+mod cases;
 mod cut_wires;
 mod drawn;
+mod drift;
 mod failures;
 mod feedback;
 mod golden;

@@ -103,21 +103,3 @@ pub fn descriptor(name: &str, fields: &Fields) -> Vec<u8> {
     bytes(&mut set, 1, &file);
     set
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// protobuf.dev, encoding: field 2 with the words `testing`.
-    #[test]
-    fn bytes_are_those_of_the_documentation_and_what_is_cut_short_is_none() {
-        let values = [Value::Flag(true), Value::Text("testing".to_owned()), Value::Number(1.0)];
-        let of = |values: &[Value]| message(&values.iter().map(|value| ("".into(), value.clone())).collect());
-        let expected = b"\x08\x01\x12\x07testing\x19\0\0\0\0\0\0\xf0\x3f";
-        assert_eq!(of(&values), expected);
-        let whole = of(&[Value::Bytes(vec![7; 300])]);
-        assert_eq!(first_bytes(&whole), Some(&[7; 300][..]));
-        assert_eq!(first_bytes(&whole[..200]), None);
-        assert_eq!(first_bytes(&[0x0a, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 1]), None);
-    }
-}

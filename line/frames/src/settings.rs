@@ -62,25 +62,3 @@ pub fn parse(text: &str) -> anyhow::Result<Setting> {
     let value: i32 = value.trim().parse().with_context(|| format!("{value} is no whole number"))?;
     Ok(Setting { id: id.number(), value })
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_backup_names_its_board_and_is_imported_as_it_was() {
-        let all = SettingId::ALL.map(|id| Setting { id: id.number(), value: id.row().min });
-        let text = backup(&About { schema: 0x1234, ..About::default() }, &all, SystemTime::UNIX_EPOCH);
-        for word in ["the host's own build", "schema 0000000000001234"] {
-            assert!(text.contains(word), "{text}");
-        }
-        let mut back = of_toml(&text).unwrap();
-        back.sort_by_key(|setting| setting.id);
-        assert_eq!(back, all);
-        let wrong = [("s1 = 1", "no setting"), ("s1-mv = [", "no TOML"), ("emg-on-mv = 1.5", "whole")];
-        for (text, word) in wrong {
-            let error = format!("{:#}", of_toml(text).unwrap_err());
-            assert!(error.contains(word), "{error}");
-        }
-    }
-}

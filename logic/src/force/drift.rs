@@ -1,12 +1,12 @@
-//! Drift of the quadrants (cells A to D, clockwise) in a grasp. The element on them is rigid: A + C = B + D.
-//! One cell that breaks this is computed from the other three. A slow fall of all with the motor at rest,
-//! beyond what skin yields, is drift of all. So is a slow rise, which is reported and not corrected.
+//! Drift of the quadrants (cells A to D, clockwise) in a grasp. Two things are known of the true cells: the element
+//! on them is rigid, A + C = B + D, and with the motor at rest their sum changes by no more than skin yields. What
+//! breaks either is drift, of the set of cells that explains best how load, contradiction and shear moved together.
+//! Shear changes by itself, so it weighs least.
 
 use tenax_hal_shim::channel::FSR_COUNT;
 
 use super::sensor::CARRIES_MN;
 
-const SIGNS: [i32; FSR_COUNT] = [1, -1, 1, -1];
 /// Tolerated contradiction of the cells, mN, and as a part of the load (Interlink's guide).
 const TOLERATED_MN: i32 = 60;
 const TOLERATED_PART: i32 = 20;
@@ -18,14 +18,39 @@ const GAIN_Q: u32 = 12;
 const ANCHOR_SHIFT: u32 = 8;
 const VOTES_SHIFT: u32 = 9;
 const CLEARLY: i32 = 2;
-/// Votes that exceed noise. A vote is 2^VOTE_SHIFT mN^2.
-const HEARD: i32 = 200;
-const VOTE_SHIFT: u32 = 8;
-/// Drift that is followed in a reading, mN: 0.24 N/s of one cell, 0.5 N/s of all.
+/// Votes that exceed noise; a vote is 2^VOTE_SHIFT mN^2.
+const HEARD: i32 = 14_000;
+const VOTE_SHIFT: u32 = 6;
+/// Drift that is followed in a reading, mN: 0.24 N/s of the contradiction, 0.5 N/s of the load.
 const CELL_FOLLOWS_MN: i32 = 3;
 const ALL_FOLLOWS_MN: i32 = 6;
 const STILL_FOR: u32 = 40;
+/// Average of the change in a reading over `2^RATE_SHIFT` readings, 1.6 s.
+const RATE_SHIFT: u32 = 7;
+const Q: u32 = 12;
 const YIELDS_PART: i32 = 5;
+
+/// Load, shear along x and y, contradiction.
+type Parts = [i32; 4];
+const WEIGHTS: Parts = [8, 1, 1, 8];
+/// Sets of cells, a bit each.
+const SETS: usize = 1 << FSR_COUNT;
+/// Parts of a drift of 1 mN of each cell of a set, and 2^16 by the sum of their weighted squares.
+const DRIFTS: [(Parts, i64); SETS] = {
+    let (mut all, mut set) = ([([0; 4], 0); SETS], 1);
+    while set < SETS {
+        let bits = set as i32;
+        let [l, x, y, k] = parts([bits & 1, bits >> 1 & 1, bits >> 2 & 1, bits >> 3 & 1]);
+        let squares = WEIGHTS[0] * l * l + WEIGHTS[1] * x * x + WEIGHTS[2] * y * y + WEIGHTS[3] * k * k;
+        all[set] = ([l, x, y, k], (1 << 16) / squares as i64);
+        set += 1;
+    }
+    all
+};
+
+const fn parts([a, b, c, d]: [i32; FSR_COUNT]) -> Parts {
+    [a + b + c + d, a + b - c - d, a + d - b - c, a - b + c - d]
+}
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cells {
@@ -36,167 +61,201 @@ pub enum Cells {
 
 #[derive(Clone, Debug, Default)]
 pub struct Drift {
-    /// Quadrant (0 to 3: A to D) that drifts against the others.
-    blamed: Option<u8>,
-    /// Contradiction beyond the cells' gains, mN: the sign of the blamed cell times its drift.
+    /// Cells that drift, a bit each.
+    set: u8,
+    /// Contradiction beyond the cells' gains that is taken for drift, mN.
     off_mn: i32,
     contradicts: u8,
-    /// Readings since the grasp began, and A - B + C - D as a part of the load, caused by unequal gains.
+    /// Readings since the grasp began, and the contradiction as a part of the load, caused by unequal gains.
     learned: u8,
     gain: i32,
-    /// Averages of 3 s, mN Q8, and the part of the contradiction that each cell explains.
+    /// Averages of 3 s, mN Q8, and how much of the moves from them the drift of each set explains.
     anchors: [i32; FSR_COUNT],
-    votes: [i32; FSR_COUNT],
-    /// Drift of all cells together, mN, and the load at which they were constant.
-    sunk_mn: i32,
-    stood_at_mn: Option<i32>,
-    /// Load without its slow rise at rest, and with it, mN.
-    rests_mn: Option<[i32; 2]>,
-    /// All cells together drift upwards in this grasp.
-    rises: bool,
+    votes: [i32; SETS],
+    /// Load without its slow change at rest, and with it, and that change in a reading, mN with [`Q`] fraction bits.
+    rests: [i32; 2],
+    rate: i32,
+    /// That change exceeds what skin yields.
+    changes: bool,
 }
 
 impl Drift {
-    pub fn blamed(&self) -> Option<usize> {
-        // `%` lets the compiler drop the bounds check.
-        self.blamed.map(|cell| usize::from(cell) % FSR_COUNT)
-    }
-
-    /// Cells that drift, one bit each.
-    pub fn doubted(&self) -> u8 {
-        if self.rises { (1 << FSR_COUNT) - 1 } else { self.blamed().map_or(0, |cell| 1 << cell) }
+    /// Cells that drift, a bit each.
+    pub const fn doubted(&self) -> u8 {
+        self.set
     }
 
     /// `loaded_mn`: load of a grasp. `opened`: the motor has opened the hand since it last closed it.
     pub fn step(&mut self, read_mn: [i32; FSR_COUNT], loaded_mn: i32, opened: bool) -> Cells {
-        self.let_go(read_mn, opened);
+        self.let_go(&read_mn, opened);
         let cells = self.corrected(read_mn);
-        if self.sunk_mn > 0 {
-            if cells.iter().sum::<i32>() < loaded_mn {
-                self.sunk_mn = 0;
-                return Cells::Known(self.corrected(read_mn));
-            }
-            if read_mn.iter().filter(|&&mn| mn >= CARRIES_MN).count() + 1 < FSR_COUNT {
-                return Cells::Sunk;
-            }
+        if self.changes && cells.iter().sum::<i32>() < loaded_mn {
+            self.forget_load();
+            return Cells::Known(self.corrected(read_mn));
         }
-        Cells::Known(cells)
+        if self.is_sunk(&read_mn) { Cells::Sunk } else { Cells::Known(cells) }
     }
 
     pub fn think(&mut self, read_mn: [i32; FSR_COUNT], loaded_mn: i32, still: u32) {
         let load_mn: i32 = self.corrected(read_mn).iter().sum();
         if load_mn < loaded_mn {
-            (self.learned, self.contradicts, self.stood_at_mn) = (0, 0, None);
-            (self.rests_mn, self.rises) = (None, false);
-        } else if self.sunk_mn == 0 || read_mn.iter().filter(|&&mn| mn >= CARRIES_MN).count() + 1 >= FSR_COUNT
-        {
-            self.contradict(read_mn, load_mn);
-            self.sink(load_mn, still);
-            self.rise(load_mn, loaded_mn, still);
+            (self.learned, self.contradicts) = (0, 0);
+            self.forget_load();
+        } else if !self.is_sunk(&read_mn) {
+            let is_known = self.contradict(read_mn, load_mn);
+            self.vote(read_mn, is_known && still >= STILL_FOR);
+            let load_mn = parts(read_mn)[0] - self.contradicting_mn() * self.drift()[0];
+            self.rest(load_mn, loaded_mn, still);
+            self.choose(load_mn);
+        }
+    }
+
+    const fn has(&self, cell: usize) -> bool {
+        self.set >> cell & 1 != 0
+    }
+
+    /// Parts of a drift of 1 mN of each cell that drifts.
+    fn drift(&self) -> Parts {
+        // `%` lets the compiler drop the bounds check.
+        DRIFTS[usize::from(self.set) % SETS].0
+    }
+
+    /// Drift of each cell that drifts, mN, as the contradiction shows it.
+    fn contradicting_mn(&self) -> i32 {
+        let [.., contradiction] = self.drift();
+        self.off_mn.checked_div(contradiction).unwrap_or(0)
+    }
+
+    /// Drift of all cells together that is none of the contradiction, mN.
+    fn changed_mn(&self) -> i32 {
+        let [from, to] = self.rests;
+        if self.changes { (to - from) >> Q } else { 0 }
+    }
+
+    fn is_sunk(&self, read_mn: &[i32; FSR_COUNT]) -> bool {
+        let carrying = read_mn.iter().filter(|&&mn| mn >= CARRIES_MN).count();
+        self.changed_mn() < 0 && carrying + 1 < FSR_COUNT
+    }
+
+    fn forget_load(&mut self) {
+        (self.rests, self.rate, self.changes) = ([0; 2], 0, false);
+        if self.drift()[3] == 0 {
+            self.set = 0;
         }
     }
 
     fn corrected(&self, mut cells: [i32; FSR_COUNT]) -> [i32; FSR_COUNT] {
-        if let Some(blamed) = self.blamed() {
-            cells[blamed] -= SIGNS[blamed] * self.off_mn;
+        let [count, ..] = self.drift();
+        let each_mn = self.contradicting_mn() + self.changed_mn().checked_div(count).unwrap_or(0);
+        for (n, mn) in cells.iter_mut().enumerate() {
+            // No cell pulls.
+            *mn = (*mn - if self.has(n) { each_mn } else { 0 }).max(0);
         }
-        // No cell pulls.
-        cells.map(|mn| (mn + self.sunk_mn / FSR_COUNT as i32).max(0))
+        cells
     }
 
-    fn let_go(&mut self, read_mn: [i32; FSR_COUNT], opened: bool) {
-        let carries = |n: usize| read_mn[n] >= CARRIES_MN;
-        if let Some(blamed) = self.blamed()
-            && (0..FSR_COUNT).all(|n| n == blamed || !carries(n))
-            && (opened || self.sunk_mn == 0)
-        {
-            self.off_mn = SIGNS[blamed] * read_mn[blamed];
-            if !carries(blamed) {
-                self.blamed = None;
+    /// What cells that contradict read while no other carries anything is drift.
+    fn let_go(&mut self, read_mn: &[i32; FSR_COUNT], opened: bool) {
+        let carries = |own: bool| (0..).zip(read_mn).any(|(n, &mn)| self.has(n) == own && mn >= CARRIES_MN);
+        let (own, other) = (carries(true), carries(false));
+        let [count, .., contradiction] = self.drift();
+        if contradiction != 0 && !other && (opened || count == 1 && self.changed_mn() >= 0) {
+            let read_mn: i32 = (0..).zip(read_mn).filter(|(n, _)| self.has(*n)).map(|(_, mn)| mn).sum();
+            self.off_mn = read_mn.checked_div(count).unwrap_or(0) * contradiction;
+            if !own {
+                self.set = 0;
             }
         }
-        if opened && !(0..FSR_COUNT).any(carries) {
-            self.sunk_mn = 0;
+        if opened && !own && !other {
+            self.forget_load();
         }
     }
 
-    fn contradict(&mut self, read_mn: [i32; FSR_COUNT], load_mn: i32) {
-        if (0..FSR_COUNT).any(|n| read_mn[n] < CARRIES_MN && self.blamed() != Some(n)) {
-            // A shear that lifts the element off a cell breaks the rule, too.
+    /// False: a shear that lifts the element off a cell breaks the rule, too.
+    fn contradict(&mut self, read_mn: [i32; FSR_COUNT], load_mn: i32) -> bool {
+        let is_alone = self.set.is_power_of_two();
+        if (0..).zip(read_mn).any(|(n, mn)| mn < CARRIES_MN && !(is_alone && self.has(n))) {
             self.contradicts = 0;
-            return;
+            return false;
         }
-        let of = |cells: &[i32; FSR_COUNT]| cells.iter().zip(SIGNS).map(|(mn, sign)| mn * sign).sum::<i32>();
+        let ([.., drifts], [.., reads]) = (self.drift(), parts(read_mn));
         // A load is below 2^17.
-        let now = of(&read_mn) - if self.blamed.is_some() { self.off_mn } else { 0 };
+        let now = reads - if drifts != 0 { self.off_mn } else { 0 };
         if self.learned < LEARN {
             if self.learned == 0 {
-                self.anchors = read_mn.map(|mn| mn << ANCHOR_SHIFT);
-                self.votes = [0; FSR_COUNT];
-                self.gain = 0;
+                (self.votes, self.gain) = ([0; SETS], 0);
             }
             self.learned += 1;
             let part = ((i64::from(now) << GAIN_Q) / i64::from(load_mn.max(1))) as i32;
             let limit = (1 << GAIN_Q) / 4;
             self.gain += (part.clamp(-limit, limit) - self.gain) >> LEARN_SHIFT;
         }
-        let moved = core::array::from_fn(|n| {
-            let lacks = (read_mn[n] << ANCHOR_SHIFT) - self.anchors[n];
-            self.anchors[n] += lacks >> ANCHOR_SHIFT;
-            lacks >> ANCHOR_SHIFT
-        });
-        let all_moved = of(&moved);
-        for ((votes, moved), sign) in self.votes.iter_mut().zip(moved).zip(SIGNS) {
-            // A cell moves by less than 2^15 mN, all of them by less than 2^17.
-            let vote = (i64::from(all_moved) * i64::from(moved * sign)) >> VOTE_SHIFT;
-            *votes = votes.saturating_add(vote as i32).saturating_sub(*votes >> VOTES_SHIFT);
-        }
         let excess = now - ((i64::from(load_mn) * i64::from(self.gain)) >> GAIN_Q) as i32;
         let beyond = excess.abs() > TOLERATED_MN + load_mn / TOLERATED_PART;
         self.contradicts = if beyond { self.contradicts.saturating_add(1) } else { 0 };
-        let (mut most, mut votes) = (0, self.votes[0]);
-        for (cell, &own) in (0..).zip(&self.votes) {
-            if own >= votes {
-                (most, votes) = (cell, own);
-            }
-        }
-        match self.blamed() {
-            None if self.contradicts >= CONTRADICTS_FOR => self.blamed = Some(most),
-            Some(blamed) if votes / CLEARLY > self.votes[blamed].max(0) + HEARD => self.blamed = Some(most),
-            _ => {}
-        }
-        if self.blamed.is_some() {
+        if drifts != 0 {
             self.off_mn += excess.clamp(-CELL_FOLLOWS_MN, CELL_FOLLOWS_MN);
         }
+        true
     }
 
-    fn sink(&mut self, load_mn: i32, still: u32) {
-        if still < STILL_FOR {
-            self.stood_at_mn = None;
+    fn vote(&mut self, read_mn: [i32; FSR_COUNT], rests: bool) {
+        if !rests {
+            self.anchors = read_mn.map(|mn| mn << ANCHOR_SHIFT);
             return;
         }
-        let stood_at_mn = *self.stood_at_mn.get_or_insert(load_mn);
-        let yields_mn = stood_at_mn / YIELDS_PART;
-        let lacks_mn = stood_at_mn - yields_mn - load_mn;
-        if lacks_mn > yields_mn {
-            // Faster than any drift: it is another load.
-            (self.sunk_mn, self.stood_at_mn) = (0, None);
-        } else {
-            self.sunk_mn += lacks_mn.clamp(0, ALL_FOLLOWS_MN);
+        let moved = parts(core::array::from_fn(|n| {
+            let lacks = (read_mn[n] << ANCHOR_SHIFT) - self.anchors[n];
+            self.anchors[n] += lacks >> ANCHOR_SHIFT;
+            lacks >> ANCHOR_SHIFT
+        }));
+        let weighted: Parts = core::array::from_fn(|n| WEIGHTS[n] * moved[n]);
+        for (votes, (drift, inverse)) in self.votes.iter_mut().zip(&DRIFTS) {
+            // A part moves by less than 2^17 mN, so that the product is below 2^24.
+            let along: i32 = weighted.iter().zip(drift).map(|(moved, drift)| moved * drift).sum();
+            let vote = (i64::from(along) * i64::from(along) * inverse) >> (16 + VOTE_SHIFT);
+            *votes = (*votes - (*votes >> VOTES_SHIFT)).saturating_add(vote.min(1 << 30) as i32);
         }
     }
 
-    fn rise(&mut self, load_mn: i32, loaded_mn: i32, still: u32) {
-        let [from_mn, follows_mn] = self.rests_mn.unwrap_or([load_mn; 2]);
-        let off_mn = load_mn - follows_mn;
-        if still < STILL_FOR || off_mn.abs() > TOLERATED_MN + load_mn / TOLERATED_PART {
-            self.rests_mn = Some([(from_mn + off_mn).max(0), load_mn]);
+    /// The motor and what is faster than any drift change the load itself; a drift goes on meanwhile.
+    fn rest(&mut self, load_mn: i32, loaded_mn: i32, still: u32) {
+        // A load is below 2^17 mN.
+        let load = load_mn << Q;
+        let [from, to] = if self.rests == [0; 2] { [load; 2] } else { self.rests };
+        let off = load - to;
+        if still < STILL_FOR || (off >> Q).abs() > TOLERATED_MN + load_mn / TOLERATED_PART {
+            let drifts = if self.changes { self.rate } else { 0 };
+            self.rests = [(from + off - drifts).max(1), load];
             return;
         }
-        let follows_mn = follows_mn + off_mn.clamp(-ALL_FOLLOWS_MN, ALL_FOLLOWS_MN);
-        let from_mn = from_mn.min(follows_mn);
-        self.rests_mn = Some([from_mn, follows_mn]);
-        self.rises |= follows_mn - from_mn > loaded_mn.max(from_mn / YIELDS_PART);
+        let change = off.clamp(-ALL_FOLLOWS_MN << Q, ALL_FOLLOWS_MN << Q);
+        self.rate += (change - self.rate) >> RATE_SHIFT;
+        self.rests = [from, to + change];
+        let (from_mn, change_mn) = (from >> Q, (to + change - from) >> Q);
+        let yields_mn = from_mn / YIELDS_PART;
+        self.changes |= change_mn < -yields_mn || change_mn > yields_mn.max(loaded_mn);
+    }
+
+    fn choose(&mut self, load_mn: i32) {
+        let contradicts = self.contradicts >= CONTRADICTS_FOR
+            || self.contradicting_mn().abs() > TOLERATED_MN + load_mn / TOLERATED_PART;
+        if !contradicts && !self.changes {
+            return;
+        }
+        let own = self.votes[usize::from(self.set) % SETS].saturating_mul(CLEARLY).saturating_add(HEARD);
+        let (mut best, mut votes) = (self.set, if self.set == 0 { 0 } else { own });
+        for ((set, &own), (drift, _)) in (0..).zip(&self.votes).zip(&DRIFTS) {
+            if own > votes && (drift[3] != 0 || !contradicts) {
+                (best, votes) = (set, own);
+            }
+        }
+        if best != self.set {
+            if self.drift()[3] == 0 {
+                self.off_mn = 0;
+            }
+            self.set = best;
+        }
     }
 }
 
@@ -239,23 +298,28 @@ mod tests {
     }
 
     #[test]
-    fn one_cell_that_drifts_is_found_and_taken_off_while_a_load_grows_or_falls() {
-        for (cell, way, pours) in
-            (0..FSR_COUNT).flat_map(|n| [(n, 1.0, 0.0), (n, 1.0, 1.0), (n, 1.0, -1.0), (n, -1.0, 0.5)])
+    fn cells_that_drift_are_found_and_taken_off_while_a_load_grows_or_falls() {
+        for (set, way, pours) in
+            (1..16_u8).flat_map(|set| [(set, 1.0, 0.0), (set, 1.0, 1.0), (set, 1.0, -1.0), (set, -1.0, 0.5)])
         {
             let mut drift = holding(cells(6_500.0, 1_200.0, 0.0));
-            for n in 0..80 * 120 {
+            // What falls to nothing is unknown.
+            let seconds = if way > 0.0 || set.count_ones() == 1 { 120 } else { 8 };
+            for n in 0..80 * seconds {
                 let t_s = f64::from(n) / 80.0;
                 // Half a newton in 7 s, and 100 mN/s of drift.
                 let x = 1_200.0 + pours * 70.0 * t_s.min(7.0);
                 let mut true_cells = cells(6_500.0, x, 0.0);
-                true_cells[cell] += way * 100.0 * t_s;
+                (0..4)
+                    .filter(|cell| set >> cell & 1 != 0)
+                    .for_each(|cell| true_cells[cell] += way * 100.0 * t_s);
                 let [a, b, c, d] = known(step(&mut drift, read(true_cells), STILL));
                 let (fx, fy) = (f64::from(a + b - c - d), f64::from(a + d - b - c));
                 let off = (fx - x).hypot(fy);
-                assert!(off < 750.0, "cell {cell}, {way}, {pours}: {off} mN after {t_s} s, {drift:?}");
+                let most = if set.count_ones() == 1 { 750.0 } else { 1_700.0 };
+                assert!(off < most, "{set:04b}, {way}, {pours}: {off} mN after {t_s} s, {drift:?}");
             }
-            assert_eq!(drift.blamed(), Some(cell), "{way}, {pours}");
+            assert_eq!(drift.doubted(), set, "{way}, {pours}");
         }
     }
 
@@ -273,7 +337,7 @@ mod tests {
             let now = with(cells(load, 0.3 * load * turn.sin(), 0.3 * load * turn.cos()));
             assert_eq!(known(step(&mut drift, read(now), MOVES)), read(now));
         }
-        assert_eq!(drift.blamed(), None);
+        assert_eq!(drift.doubted(), 0);
     }
 
     #[test]
@@ -294,7 +358,7 @@ mod tests {
     }
 
     #[test]
-    fn all_cells_that_rise_slowly_at_rest_are_doubted_and_not_what_presses_or_closes() {
+    fn all_cells_that_rise_slowly_at_rest_are_taken_off_and_not_what_presses_or_closes() {
         for (mn_a_reading, motor, all) in
             [(5.0, STILL, true), (0.25, STILL, true), (40.0, STILL, false), (5.0, MOVES, false)]
         {
@@ -303,7 +367,9 @@ mod tests {
             while load < 13_000.0 {
                 load += mn_a_reading;
                 let now = read(cells(load, 1_200.0, 0.0));
-                assert_eq!(known(step(&mut drift, now, motor)), now);
+                let known: i32 = known(step(&mut drift, now, motor)).iter().sum();
+                let true_mn = if all { 6_500 } else { now.iter().sum() };
+                assert!((true_mn - 100..true_mn + 1_400).contains(&known), "{known} mN for {true_mn}");
             }
             assert_eq!(drift.doubted() == 0b1111, all, "{mn_a_reading} mN, {motor}");
             step(&mut drift, [0; FSR_COUNT], STILL);
@@ -335,7 +401,7 @@ mod tests {
                 now[2] += off;
                 step(&mut drift, read(now), STILL);
             }
-            assert_eq!(drift.blamed(), Some(2));
+            assert_eq!(drift.doubted(), 1 << 2);
             let mut empty = [0.0; FSR_COUNT];
             empty[2] += off;
             let cells = known(step(&mut drift, read(empty), MOVES));

@@ -39,7 +39,8 @@ impl ForceSensor {
             Cells::Known(quadrant_mn) => {
                 self.contact.feel(quadrant_mn, loaded_mn, closes);
                 let mut forces = forces(self.contact.centred(quadrant_mn), loaded_mn);
-                if carrying(&quadrant_mn) < AGREEING {
+                // The shear is as uncertain as the drift is large: what drifts with it cannot be told from the object's.
+                if carrying(&quadrant_mn) < AGREEING || self.drift.doubted() != 0 {
                     forces.ratio_permille = None;
                 }
                 Some(forces)
@@ -48,7 +49,7 @@ impl ForceSensor {
         }
     }
 
-    pub fn doubted(&self) -> u8 {
+    pub const fn doubted(&self) -> u8 {
         self.drift.doubted()
     }
 

@@ -64,33 +64,3 @@ impl Inbox {
         self.counts.missed += before.missed;
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use tenax_hal_shim::wire::{Answer, FRAME_MAX, encode};
-
-    fn frame(sequence: u16) -> Vec<u8> {
-        let message = Up::Answer { of: 7, frame: 0, answer: Answer::Done };
-        encode(sequence, &message, &mut [0; FRAME_MAX]).expect("it fits").to_vec()
-    }
-
-    fn counts(bytes: &[u8]) -> Counts {
-        let mut inbox = Inbox::default();
-        bytes.iter().for_each(|&byte| _ = inbox.push(byte));
-        inbox.counts()
-    }
-
-    #[test]
-    fn gaps_across_a_wrap_count_garbage_is_skipped_and_a_new_start_is_no_gap() {
-        let counted = counts(&[frame(65_534), frame(1), frame(2)].concat());
-        assert_eq!(counted, Counts { messages: 3, bad_frames: 0, missed: 2 });
-        let mut torn = frame(0);
-        torn[3] ^= 0x40;
-        let counted = counts(&[torn, vec![0xff; 2_000], vec![0], frame(0)].concat());
-        assert_eq!(counted, Counts { messages: 1, bad_frames: 2, missed: 0 });
-        let mut buffer = [0; FRAME_MAX];
-        let hello = encode(0, &Up::Hello { frame_hz: 2_000, after: None }, &mut buffer).expect("it fits");
-        assert_eq!(counts(&[&frame(700)[..], hello, &frame(1)].concat()).missed, 0);
-    }
-}

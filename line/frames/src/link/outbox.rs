@@ -51,23 +51,3 @@ impl<W: Write> Outbox<W> {
 const fn first_number(process: u32, nth: u32) -> u16 {
     process.wrapping_mul(40_503).wrapping_add(nth.wrapping_mul(27_146)) as u16
 }
-
-#[cfg(test)]
-mod tests {
-    use super::first_number;
-
-    #[test]
-    fn clients_of_one_line_begin_far_apart() {
-        for process in [1, 4_000, 65_535] {
-            // Programs that are started one after the other, and outboxes of one program.
-            let programs: Vec<u16> = (0..8).map(|n| first_number(process + n, 0)).collect();
-            let outboxes: Vec<u16> = (0..8).map(|n| first_number(process, n)).collect();
-            for numbers in [programs, outboxes] {
-                for (n, a) in numbers.iter().enumerate() {
-                    let apart = |b: &u16| a.wrapping_sub(*b).min(b.wrapping_sub(*a));
-                    assert!(numbers[..n].iter().all(|b| apart(b) > 2_000), "{numbers:?}");
-                }
-            }
-        }
-    }
-}
