@@ -1,5 +1,6 @@
 //! `tenax record`: a board's line into an MCAP file.
 
+use std::io;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::atomic::Ordering::Relaxed;
@@ -60,10 +61,9 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     let (mut began, mut waits, mut is_joined, mut end) = (Instant::now(), args.from_start, false, None);
     let is_over = |began: Instant| args.seconds.is_some_and(|s| began.elapsed().as_secs_f64() >= s);
     while end.is_none() && !stopped.load(Relaxed) && (waits || !is_over(began)) {
-        if !waits {
-            client.keep_streaming(true)?;
-        }
-        match client.next_message() {
+        // What cannot be asked of a line has ended it.
+        let asked = if waits { Ok(()) } else { client.keep_streaming(true).map_err(io::Error::other) };
+        match asked.and_then(|()| client.next_message()) {
             Ok(Some(heard)) if waits && !matches!(heard.received.message, Up::Hello { .. }) => {}
             Ok(Some(heard)) => {
                 if std::mem::take(&mut waits) {
