@@ -28,6 +28,8 @@ const STILL_FOR: u32 = 40;
 /// Average of the change in a reading over `2^RATE_SHIFT` readings, 1.6 s.
 const RATE_SHIFT: u32 = 7;
 const Q: u32 = 12;
+/// Largest load, mN.
+const LOAD_MAX: i32 = 1 << 17;
 const YIELDS_PART: i32 = 5;
 
 /// Load, shear along x and y, contradiction.
@@ -226,7 +228,7 @@ impl Drift {
         let off = load - to;
         if still < STILL_FOR || (off >> Q).abs() > TOLERATED_MN + load_mn / TOLERATED_PART {
             let drifts = if self.changes { self.rate } else { 0 };
-            self.rests = [(from + off - drifts).max(1), load];
+            self.rests = [(from + off - drifts).clamp(1, LOAD_MAX << Q), load];
             return;
         }
         let change = off.clamp(-ALL_FOLLOWS_MN << Q, ALL_FOLLOWS_MN << Q);
