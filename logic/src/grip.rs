@@ -1,8 +1,8 @@
 //! The grip reflex: how much to close on slip or incipient slip.
 //!
-//! A pulse ends when the missing force ([`Lacks`]) is there: by the measured force plus the travel that it
-//! does not show yet times the stiffness ([`Stiffness`]). Where that is unknown, a pulse has the set length.
-//! After a pulse against slip the object settles for longer than the motor's dead time. No pulse begins on a
+//! Closing ends when the target of a [`Slide`], or the force that a warning lacks ([`Lacks`]), is there: by the
+//! measured force plus the travel that it does not show yet times the stiffness ([`Stiffness`]). Where that is
+//! unknown, a pulse has the set length. After slip the object settles for longer than the motor's dead time. No pulse begins on a
 //! finger that holds nothing or is at the force ceiling; while the force is unknown, all pulses share the blind
 //! budget of the [`Account`].
 
