@@ -25,36 +25,6 @@ impl Budgets {
     }
 }
 
-#[derive(Clone, Debug)]
-pub struct Line {
-    pub what: &'static str,
-    pub unit: &'static str,
-    /// What was measured, None where it could not be.
-    pub measured: Option<u64>,
-    pub budget: u64,
-    pub of: Option<u64>,
-}
-
-impl Line {
-    pub fn is_kept(&self) -> bool {
-        self.measured.is_some_and(|measured| measured <= self.budget)
-    }
-}
-
-impl std::fmt::Display for Line {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { what, unit, measured, budget, of } = self;
-        let Some(measured) = measured else {
-            return write!(f, "{what:<16}  not measured, budget {budget} {unit}");
-        };
-        write!(f, "{what:<16}{measured:>8} {unit:<13}budget {budget:>6}")?;
-        if let Some(of) = of {
-            write!(f, "   {:>4.1} % of {of}", 100.0 * *measured as f64 / *of as f64)?;
-        }
-        write!(f, "{}", if self.is_kept() { "" } else { "   OVER BUDGET" })
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use tenax_sim::board::Run;
 use tenax_sim::board::agreement::Agreement;
-use tenax_sim::budgets::{Budgets, Line};
-use tenax_sim::image::size::{FLASH_BYTES, RAM_BYTES, Size};
+use tenax_sim::budgets::Budgets;
+use tenax_sim::image::size::Size;
 use tenax_sim::live::Use;
 use tenax_sim::report::{CYCLES_PER_INSTRUCTION, Report};
 use tenax_sim::session::{self, Board};
@@ -74,7 +74,7 @@ pub fn bars(board: &Board, image: Option<&Path>) -> anyhow::Result<Vec<Bar>> {
         agreement.holds(),
     ));
     bars.push(load(report));
-    bars.extend(budgets(image, report)?.iter().map(budget));
+    bars.extend(budgets(image, report)?);
     Ok(bars)
 }
 
@@ -109,25 +109,22 @@ fn load(report: &Report) -> Bar {
 }
 
 /// Every budget, beside the size of the image and the counts of a run. Fails if the image cannot be read.
-fn budgets(image: &Path, report: &Report) -> anyhow::Result<[Line; 6]> {
+fn budgets(image: &Path, report: &Report) -> anyhow::Result<[Bar; 6]> {
     let budgets = Budgets::of_checkout()?;
     let size = Size::read(image)?;
-    let bytes = |what, measured, budget, of| Line { what, unit: "bytes", measured, budget, of: Some(of) };
-    let instructions =
-        |what, measured, budget| Line { what, unit: "instructions", measured, budget, of: None };
     let mean = |mean: Option<f64>| mean.map(|mean| mean.round() as u64);
     let load = &report.load;
     Ok([
-        bytes("flash", Some(size.flash), budgets.flash_bytes, FLASH_BYTES),
-        bytes("RAM, variables", Some(size.ram), budgets.ram_bytes, RAM_BYTES),
-        bytes("worst stack", report.stack_bytes, budgets.stack_bytes, RAM_BYTES - size.ram),
-        instructions("tick, mean", mean(load.tick_instructions_mean), budgets.tick_instructions_mean),
-        instructions("tick, worst", report.ticks.instructions_max, budgets.tick_instructions_max),
-        instructions("period, mean", mean(load.period_instructions_mean), budgets.period_instructions_mean),
-    ])
-}
-
-fn budget(line: &Line) -> Bar {
-    let measured = line.measured.map_or("not measured".to_owned(), |measured| measured.to_string());
-    Bar::new(format!("{}, {}", line.what, line.unit), measured, line.budget.to_string(), line.is_kept())
+        ("flash, bytes", Some(size.flash), budgets.flash_bytes),
+        ("RAM, variables, bytes", Some(size.ram), budgets.ram_bytes),
+        ("worst stack, bytes", report.stack_bytes, budgets.stack_bytes),
+        ("tick, mean, instructions", mean(load.tick_instructions_mean), budgets.tick_instructions_mean),
+        ("tick, worst, instructions", report.ticks.instructions_max, budgets.tick_instructions_max),
+        ("period, mean, instructions", mean(load.period_instructions_mean), budgets.period_instructions_mean),
+    ]
+    .map(|(what, measured, budget)| {
+        let kept = measured.is_some_and(|measured| measured <= budget);
+        let measured = measured.map_or("not measured".to_owned(), |measured| measured.to_string());
+        Bar::new(what, measured, budget.to_string(), kept)
+    }))
 }
