@@ -38,7 +38,6 @@ pub enum Mark {
     Line,
     Dashes,
     Dots,
-    Rings,
     Crosses,
 }
 

@@ -107,7 +107,6 @@ fn draw_stretch(
         Mark::Line => drawn(chart.draw_series(LineSeries::new(points, line)))?,
         Mark::Dashes => drawn(chart.draw_series(DashedLineSeries::new(points, 7, 5, line)))?,
         Mark::Dots => drawn(chart.draw_series(marks.map(|at| Circle::new(at, 3, series.colour.filled()))))?,
-        Mark::Rings => drawn(chart.draw_series(marks.map(|at| Circle::new(at, 7, line))))?,
         Mark::Crosses => drawn(chart.draw_series(marks.map(|at| Cross::new(at, 4, line))))?,
     };
     Ok(())
@@ -150,7 +149,6 @@ fn legend(
                 area.draw(&PathElement::new([(left + dash, y), (left + dash + 6, y)], line))
             }),
             Mark::Dots => area.draw(&Circle::new((left + 13, y), 3, series.colour.filled())),
-            Mark::Rings => area.draw(&Circle::new((left + 13, y), 7, line)),
             Mark::Crosses => area.draw(&Cross::new((left + 13, y), 4, line)),
         };
         drawn(drew)?;
