@@ -139,11 +139,6 @@ impl Client {
         Ok(self.ask_once(&Down::Open { nonce }, within)? == Answer::Done)
     }
 
-    /// The sender, for a thread of its own. Nothing can be asked afterwards.
-    pub fn take_outbox(&mut self) -> Option<Outbox<Box<dyn Write + Send>>> {
-        self.outbox.take()
-    }
-
     fn ask_once(&mut self, command: &Down, within: Duration) -> anyhow::Result<Answer> {
         // A board that is slower than real time skips more commands. Twice the same read or `Set` does no more than one.
         let repeats = command.reads() || matches!(command, Down::Set(_));
