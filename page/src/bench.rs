@@ -7,14 +7,11 @@ use tenax_hal_shim::channel::{FRAME_HZ, SCAN_HZ};
 use tenax_hal_shim::detector::DetectorSet;
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::Down;
-use tenax_hal_shim::words::Kept;
-use tenax_logic::config::Config;
-use tenax_logic::setting::SettingId;
-use tenax_logic::store::payload;
 use tenax_scene::act::KEYS;
 use tenax_scene::plant::{Pins, Plant};
 use tenax_scene::{Act, SceneFile, World, builtin};
-use tenax_sim::board::simulated::{Ahead, Grips, Stepper, frames_in, seconds_of};
+use tenax_sim::board::kept::Set;
+use tenax_sim::board::simulated::{Grips, Stepper, frames_in, seconds_of};
 use tenax_sim::board::{Recorder, Run};
 
 use crate::talker::Talker;
@@ -30,6 +27,10 @@ fn file(name: &str) -> Result<SceneFile, String> {
     SceneFile::parse(&text, &place).map_err(|error| error.to_string())
 }
 
+fn set(file: &SceneFile, seed: u64, settings: &[(String, i32)]) -> Result<Set<World>, String> {
+    Set::new(World::new(file, seed), settings).map_err(|why| why.to_string())
+}
+
 /// Name, title and length (s) of each scene.
 pub fn scenes() -> Result<Value, String> {
     let names = std::iter::once("bench").chain(builtin().iter().map(|(name, _)| *name));
@@ -38,10 +39,9 @@ pub fn scenes() -> Result<Value, String> {
     Ok(Value::Array(rows?))
 }
 
-/// A world at a board whose flash holds settings, with a person at the button and at the other end of the line.
+/// A person at the button and at the other end of the line.
 struct Manned {
-    world: World,
-    settings: Option<Vec<u8>>,
+    set: Set<World>,
     /// Scans for which the button is still pressed. What waits for the line is sent when it is let go.
     pressed: u32,
     down: VecDeque<u8>,
@@ -49,16 +49,16 @@ struct Manned {
 
 impl Plant for Manned {
     fn within(&self) -> Option<&dyn Plant> {
-        Some(&self.world)
+        Some(&self.set)
     }
 
     fn within_mut(&mut self) -> Option<&mut dyn Plant> {
-        Some(&mut self.world)
+        Some(&mut self.set)
     }
 
     fn scan(&mut self, drive: MotorDrive) -> &Pins {
         self.pressed = self.pressed.saturating_sub(1);
-        self.world.scan(drive)
+        self.set.scan(drive)
     }
 
     fn line_bytes(&mut self) -> Vec<u8> {
@@ -68,12 +68,7 @@ impl Plant for Manned {
     }
 
     fn button(&self) -> bool {
-        self.pressed > 0 || self.world.button()
-    }
-
-    fn kept(&self) -> Vec<(Kept, Vec<u8>)> {
-        let own = self.settings.iter().map(|payload| (Kept::Settings, payload.clone()));
-        own.chain(self.world.kept()).collect()
+        self.pressed > 0 || self.set.button()
     }
 }
 
@@ -89,44 +84,27 @@ impl Recorder for Tape {
 struct Hand {
     plant: Manned,
     board: Stepper,
-    grips: Grips,
-    ahead: Ahead,
     rows: usize,
     needs_n: f64,
     carried: bool,
 }
 
 impl Hand {
-    fn new(
-        scene: &SceneFile,
-        seed: u64,
-        settings: Option<Vec<u8>>,
-        grips: Grips,
-        line: &mut dyn Recorder,
-    ) -> Self {
-        let plant = Manned { world: World::new(scene, seed), settings, pressed: 0, down: VecDeque::new() };
-        let detectors = match grips {
-            Grips::Reflex(detectors) => detectors,
-            Grips::Bound | Grips::Constant(_) => DetectorSet::NONE,
-        };
-        let board = Stepper::new(&plant, detectors, line);
-        Self { plant, board, grips, ahead: Ahead::default(), rows: 0, needs_n: 0.0, carried: false }
+    fn new(set: Set<World>, grips: Grips, line: &mut dyn Recorder) -> Self {
+        let plant = Manned { set, pressed: 0, down: VecDeque::new() };
+        let board = Stepper::new(&plant, grips, line);
+        Self { plant, board, rows: 0, needs_n: 0.0, carried: false }
     }
 
     /// False: the board was reset.
     fn frame(&mut self, line: &mut dyn Recorder) -> bool {
-        let Self { plant, board, grips, ahead, .. } = self;
-        board.frame(plant, line, &mut |own, fingertip, plant| match *grips {
-            Grips::Reflex(_) => own,
-            Grips::Bound => ahead.drive(own, fingertip, plant.planned()),
-            Grips::Constant(target_n) => ahead.drive(own, fingertip, plant.closing_to(target_n)),
-        })
+        self.board.frame(&mut self.plant, line)
     }
 
     /// Time (s), speed of the object over the pad (mm/s), need and grip (N), margin (N).
     fn trace(&mut self) -> Vec<Value> {
         let mut points = Vec::new();
-        for row in self.plant.world.take_trace() {
+        for row in self.plant.set.plant.take_trace() {
             self.rows += 1;
             self.carried |= row.needed_n > 0.0;
             self.needs_n = row.needed_n;
@@ -148,7 +126,8 @@ impl Hand {
 
     fn told(&mut self) -> Value {
         let trace = self.trace();
-        let (pose, truth) = (self.plant.world.pose(), self.plant.world.truth());
+        let world = &self.plant.set.plant;
+        let (pose, truth) = (world.pose(), world.truth());
         let mean = |sum: f64| (truth.carried_s > 0.0).then(|| sum / truth.carried_s);
         json!({
             "trace": trace,
@@ -175,7 +154,7 @@ impl Hand {
 pub struct Bench {
     file: SceneFile,
     seed: u64,
-    settings: Option<Vec<u8>>,
+    settings: Vec<(String, i32)>,
     hand: Hand,
     tape: Tape,
     beside: Option<Hand>,
@@ -186,18 +165,11 @@ pub struct Bench {
 
 impl Bench {
     /// Fails on an unknown scene, or a setting that is none or out of its range.
-    pub fn new(name: &str, seed: u64, settings: &[(String, i32)], beside: &str) -> Result<Self, String> {
+    pub fn new(name: &str, seed: u64, settings: Vec<(String, i32)>, beside: &str) -> Result<Self, String> {
         let file = file(name)?;
-        let mut config = Config::default();
-        for (name, value) in settings {
-            let id = SettingId::by_name(name).ok_or_else(|| format!("no setting is called {name}"))?;
-            config.set(id, *value).map_err(|range| format!("{name} = {value}: it may be {range:?}"))?;
-        }
-        config.line_trusted |= World::new(&file, seed).trusts_line();
-        let settings = (!settings.is_empty()).then(|| payload::of_settings(&config).to_vec());
         let mut tape = Tape::default();
         let all = Grips::Reflex(DetectorSet::ALL);
-        let hand = Hand::new(&file, seed, settings.clone(), all, &mut tape);
+        let hand = Hand::new(set(&file, seed, &settings)?, all, &mut tape);
         let until = frames_in(file.duration_s());
         let mut bench = Self {
             file,
@@ -226,25 +198,28 @@ impl Bench {
             ("off", _) => Grips::Reflex(DetectorSet::NONE),
             ("constant", newtons) => Grips::Constant(match newtons.parse() {
                 Ok(newtons) => newtons,
-                Err(_) => self.mean_n(),
+                Err(_) => self.mean_n()?,
             }),
             _ => return Err(format!("no control is called {control}")),
         };
-        self.beside = Some(Hand::new(&self.file, self.seed, self.settings.clone(), grips, &mut ()));
+        self.beside = Some(Hand::new(self.set()?, grips, &mut ()));
         Ok(())
     }
 
     /// Mean grip force while the reflex carries the object, over the whole scene, N.
-    fn mean_n(&self) -> f64 {
-        let all = Grips::Reflex(DetectorSet::ALL);
-        let mut own = Hand::new(&self.file, self.seed, self.settings.clone(), all, &mut ());
+    fn mean_n(&self) -> Result<f64, String> {
+        let mut own = Hand::new(self.set()?, Grips::Reflex(DetectorSet::ALL), &mut ());
         // A scene that stays on has no mean force: what a person does in it is not known.
         for _ in 0..self.until.min(120 * FRAME_HZ) {
             own.frame(&mut ());
-            own.plant.world.take_trace();
+            own.plant.set.plant.take_trace();
         }
-        let truth = own.plant.world.truth();
-        if truth.carried_s > 0.0 { truth.carried_ns / truth.carried_s } else { 10.0 }
+        let truth = own.plant.set.plant.truth();
+        Ok(if truth.carried_s > 0.0 { truth.carried_ns / truth.carried_s } else { 10.0 })
+    }
+
+    fn set(&self) -> Result<Set<World>, String> {
+        set(&self.file, self.seed, &self.settings)
     }
 
     /// A setting is changed with consent: the button is pressed before.
@@ -294,12 +269,12 @@ impl Bench {
 /// Everything that the board decided in a scene, as the bench runs it when nobody touches it: for the golden hashes.
 pub fn run(name: &str, seed: u64) -> Result<(Run, World), String> {
     let (file, mut run) = (file(name)?, Run::default());
-    let mut hand = Hand::new(&file, seed, None, Grips::Reflex(DetectorSet::ALL), &mut run);
+    let mut hand = Hand::new(set(&file, seed, &[])?, Grips::Reflex(DetectorSet::ALL), &mut run);
     for _ in 0..frames_in(file.duration_s()) {
         if !hand.frame(&mut run) {
             break;
         }
     }
     run.summary = hand.board.end();
-    Ok((run, hand.plant.world))
+    Ok((run, hand.plant.set.plant))
 }

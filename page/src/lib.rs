@@ -102,7 +102,7 @@ impl Page {
                     .filter_map(|(name, value)| Some((name.clone(), value.as_i64()?.try_into().ok()?)))
                     .collect();
                 let seed = request["seed"].as_u64().unwrap_or(1);
-                let bench = Bench::new(text(request, "scene"), seed, &settings, text(request, "beside"))?;
+                let bench = Bench::new(text(request, "scene"), seed, settings, text(request, "beside"))?;
                 self.source = Some(Source::Bench(Box::new(bench)));
                 self.go_on(request)
             }

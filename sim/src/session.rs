@@ -12,6 +12,7 @@ use std::time::Instant;
 
 use anyhow::{Context, bail, ensure};
 use tenax_frames::link::{Captured, Clock};
+use tenax_hal_shim::detector::DetectorSet;
 use tenax_hal_shim::wire::Up;
 use tenax_logic::emg::model::EmgModel;
 use tenax_scene::plant::Plant;
@@ -21,7 +22,7 @@ use self::witness::{Drawn, Witness};
 #[cfg(feature = "emulator")]
 use crate::board::emulated;
 use crate::board::kept::model_of;
-use crate::board::simulated::{frames_in, seconds_of};
+use crate::board::simulated::{Grips, frames_in, seconds_of};
 use crate::board::{Recorder, Run, Summary, simulated};
 use crate::disturbances;
 use crate::input;
@@ -92,7 +93,8 @@ impl Board {
         match self {
             Self::Host => {
                 let began = Instant::now();
-                let (mut summary, plant) = simulated::record(plant, recorder, progress);
+                let (mut summary, plant) =
+                    simulated::record(plant, Grips::Reflex(DetectorSet::ALL), recorder, progress);
                 summary.wall_s = began.elapsed().as_secs_f64();
                 Ok((summary, plant))
             }

@@ -37,7 +37,7 @@ fn with(base: &str, Drawn { film_mv, full_hz, spin_ms, choice }: Drawn) -> Scene
 }
 
 fn ran(base: &str, drawn: Drawn, seed: u64) -> Run {
-    simulated::run(World::new(&with(base, drawn), seed), &mut |_| {}).0
+    simulated::run(World::new(&with(base, drawn), seed)).0
 }
 
 fn differs(one: &Run, other: &Run) -> Option<String> {

@@ -19,7 +19,7 @@ const SEEDS: [u64; 2] = [1, 2];
 
 fn scene(name: &str, text: &str, seed: u64) -> Hash {
     let file = SceneFile::parse(text, name).expect("a shipped scene is good");
-    let (run, mut world) = simulated::run(World::new(&file, seed), &mut |_| {});
+    let (run, mut world) = simulated::run(World::new(&file, seed));
     of_scene(&run, &mut world)
 }
 

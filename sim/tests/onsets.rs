@@ -13,7 +13,7 @@ fn every_onset_of_a_scene_is_where_its_evidence_says() {
     for (scene, speak) in
         [(DEFAULT_SCENE, &[DetectorId::S1, DetectorId::S2][..]), ("array-pick", &[DetectorId::Mlp])]
     {
-        let (run, _) = simulated::run(World::new(&loaded(scene), 1), &mut |_| {});
+        let (run, _) = simulated::run(World::new(&loaded(scene), 1));
         let (mut before, mut spoke) = (DetectorSet::NONE, DetectorSet::NONE);
         for slow in &run.slows {
             let first = slow.frame + 1 - u32::from(FRAMES_PER_SLOW_FRAME);

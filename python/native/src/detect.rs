@@ -24,9 +24,11 @@ use tenax_logic::photoelastic::{Head, HeadConfig, PhotoelasticDetector};
 use tenax_logic::store::record::{PAYLOAD_BYTES, Record};
 use tenax_logic::strain::Gauges;
 use tenax_logic::vibration::{Vibration, VibrationDetector};
+use tenax_sim::board::kept::config_of;
 
 use crate::columns::{MV, put};
-use crate::fingertip::{Settings, config};
+use crate::fingertip::Settings;
+use crate::refused;
 
 const SLOTS: usize = FRAMES_PER_SLOW_FRAME as usize;
 
@@ -156,7 +158,7 @@ pub fn s1<'py>(
     rate_hz: f64,
     settings: Settings,
 ) -> Table<'py> {
-    let (config, films) = (config(&settings)?, columns(&volts, PVDF_COUNT, rate_hz, FRAME_HZ)?);
+    let (config, films) = (config_of(&settings).map_err(refused)?, columns(&volts, PVDF_COUNT, rate_hz, FRAME_HZ)?);
     let mut detector = VibrationDetector::default();
     table(py, 0..films[0].len(), |frame| {
         let vibration = detector.process(&config.vibration, &samples(&films, PVDF, frame), None);
@@ -176,7 +178,7 @@ pub fn s2<'py>(
     rate_hz: f64,
     settings: Settings,
 ) -> Table<'py> {
-    let config = config(&settings)?.friction;
+    let config = config_of(&settings).map_err(refused)?.friction;
     let normal = drawn(&normal_n.as_array().to_vec(), rate_hz, SLOW_HZ)?;
     let shear = drawn(&shear_n.as_array().to_vec(), rate_hz, SLOW_HZ)?;
     let (mut detector, mut said, sensors) = (FrictionDetector::default(), Said::NOTHING, Sensors::default());
@@ -231,7 +233,7 @@ pub fn photoelastic<'py>(
     rate_hz: f64,
     settings: Settings,
 ) -> Table<'py> {
-    let config = HeadConfig { fitted: true, ..config(&settings)?.head };
+    let config = HeadConfig { fitted: true, ..config_of(&settings).map_err(refused)?.head };
     let light = [drawn(&volts.as_array().to_vec(), rate_hz, FRAME_HZ)?];
     let (mut detector, mut sensors) = (PhotoelasticDetector::default(), Sensors::default());
     table(py, 0..light[0].len(), |frame| {

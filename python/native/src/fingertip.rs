@@ -10,12 +10,9 @@ use tenax_hal_shim::channel::{COUNT, SCANS_PER_FRAME};
 use tenax_hal_shim::detector::DetectorSet;
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::{Event, Up};
-use tenax_hal_shim::words::Kept as Record;
-use tenax_logic::config::Config;
-use tenax_logic::setting::SettingId;
-use tenax_logic::store::payload;
 use tenax_scene::plant::{Pins, Plant};
-use tenax_sim::board::simulated::{Stepper, frames_in, seconds_of};
+use tenax_sim::board::kept::Set;
+use tenax_sim::board::simulated::{Grips, Stepper, frames_in, seconds_of};
 use tenax_sim::replay::{Recipe, Recording, ReplayPlant};
 
 use crate::columns::{self, Kept};
@@ -26,55 +23,6 @@ type Told<'py> = (Bound<'py, PyDict>, Bound<'py, PyDict>, Vec<(f64, String)>, Bo
 
 /// Settings by name, as `tenax config` writes them.
 pub type Settings = Vec<(String, i32)>;
-
-/// Fails if a setting is none or out of its range.
-pub fn config(settings: &Settings) -> PyResult<Config> {
-    let mut config = Config::default();
-    for (name, value) in settings {
-        let id = SettingId::by_name(name).ok_or_else(|| {
-            PyValueError::new_err(format!("no setting is called {name}: tenax.SETTINGS has them"))
-        })?;
-        config.set(id, *value).map_err(|range| {
-            let (least, most) = range.into_inner();
-            PyValueError::new_err(format!("{name} = {value}: it may be {least} to {most}"))
-        })?;
-    }
-    Ok(config)
-}
-
-/// A plant at a board whose flash holds these settings.
-pub struct Set<P> {
-    pub plant: P,
-    settings: Option<Vec<u8>>,
-}
-
-impl<P: Plant> Set<P> {
-    pub fn new(plant: P, settings: &Settings) -> PyResult<Self> {
-        let mut config = config(settings)?;
-        config.line_trusted |= plant.trusts_line();
-        let settings = (!settings.is_empty()).then(|| payload::of_settings(&config).to_vec());
-        Ok(Self { plant, settings })
-    }
-}
-
-impl<P: Plant> Plant for Set<P> {
-    fn within(&self) -> Option<&dyn Plant> {
-        Some(&self.plant)
-    }
-
-    fn within_mut(&mut self) -> Option<&mut dyn Plant> {
-        Some(&mut self.plant)
-    }
-
-    fn scan(&mut self, drive: MotorDrive) -> &Pins {
-        self.plant.scan(drive)
-    }
-
-    fn kept(&self) -> Vec<(Record, Vec<u8>)> {
-        let own = self.settings.iter().map(|payload| (Record::Settings, payload.clone()));
-        own.chain(self.plant.kept()).collect()
-    }
-}
 
 /// Voltages of four scans, from outside.
 #[derive(Default)]
@@ -103,9 +51,9 @@ pub struct Fingertip {
 impl Fingertip {
     #[new]
     fn new(settings: Settings) -> PyResult<Self> {
-        let plant = Set::new(Given::default(), &settings)?;
+        let plant = Set::new(Given::default(), &settings).map_err(refused)?;
         let mut kept = Kept::default();
-        let board = Stepper::new(&plant, DetectorSet::ALL, &mut kept);
+        let board = Stepper::new(&plant, Grips::Reflex(DetectorSet::ALL), &mut kept);
         Ok(Self { settings, plant, board, kept, frames: 0 })
     }
 
@@ -127,7 +75,7 @@ impl Fingertip {
             pins.0.iter_mut().zip(row).for_each(|(pin, volts)| *pin = *volts);
         }
         self.kept = Kept::default();
-        self.board.frame(&mut self.plant, &mut self.kept, &mut |own, _, _| own);
+        self.board.frame(&mut self.plant, &mut self.kept);
         self.frames += 1;
         let fingertip = &self.board.device.fingertip;
         let tick = fingertip.last_tick().unwrap_or_default();
@@ -154,10 +102,10 @@ impl Fingertip {
         let zero_s = py.detach(|| {
             let plant = plant(&recording, recipe, seed)?;
             let zero_s = plant.time_zero_s();
-            let mut plant = Set::new(plant, &self.settings)?;
-            let mut board = Stepper::new(&plant, DetectorSet::ALL, &mut kept);
+            let mut plant = Set::new(plant, &self.settings).map_err(refused)?;
+            let mut board = Stepper::new(&plant, Grips::Reflex(DetectorSet::ALL), &mut kept);
             for _ in 0..frames_in(plant.duration_s()) {
-                board.frame(&mut plant, &mut kept, &mut |own, _, _| own);
+                board.frame(&mut plant, &mut kept);
                 let fingertip = &board.device.fingertip;
                 ticks.push((fingertip.last_tick().unwrap_or_default(), fingertip.mode()));
             }

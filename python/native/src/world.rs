@@ -18,12 +18,13 @@ use tenax_scene::drawn::{Drawn, Family, nth};
 use tenax_scene::plant::Plant;
 use tenax_scene::truth::Row;
 use tenax_sim::board::Recorder;
-use tenax_sim::board::simulated::{Stepper, frames_in, seconds_of};
+use tenax_sim::board::kept::Set;
+use tenax_sim::board::simulated::{Grips, Stepper, frames_in, seconds_of};
 use tenax_sim::report::fate::Fate;
 use tenax_sim::session;
 
 use crate::columns::{self, MV, drive_of, signed};
-use crate::fingertip::{Set, Settings};
+use crate::fingertip::Settings;
 use crate::refused;
 
 const SLOTS: usize = FRAMES_PER_SLOW_FRAME as usize;
@@ -190,9 +191,9 @@ impl World {
 
 impl World {
     fn of(file: SceneFile, seed: u64, reflex: bool, settings: &Settings) -> PyResult<Self> {
-        let plant = Set::new(tenax_scene::World::new(&file, seed), settings)?;
+        let plant = Set::new(tenax_scene::World::new(&file, seed), settings).map_err(refused)?;
         let detectors = if reflex { DetectorSet::ALL } else { DetectorSet::NONE };
-        let board = Stepper::new(&plant, detectors, &mut ());
+        let board = Stepper::new(&plant, Grips::Reflex(detectors), &mut ());
         let until = frames_in(plant.duration_s());
         let watch = Watch::default();
         Ok(Self { file, plant, board, watch, reflex, frames: 0, until, last: None })
@@ -202,7 +203,7 @@ impl World {
         self.watch.vibration = 0;
         for _ in 0..frames.min(self.until - self.frames) {
             let reflex = self.reflex;
-            let goes_on = self.board.frame(&mut self.plant, &mut self.watch, &mut |own, fingertip, _| {
+            let goes_on = self.board.frame_with(&mut self.plant, &mut self.watch, &|own, fingertip| {
                 let source = fingertip.last_tick().unwrap_or_default().source;
                 let is_reflex = reflex && source == DriveSource::Reflex;
                 match own {

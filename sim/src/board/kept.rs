@@ -1,14 +1,17 @@
-//! Records that a board holds before the start: whether its line is trusted, and the calibration to the wearer of what is played.
+//! Records that a board holds before the start: whether its line is trusted, other settings, and the calibration to the wearer of what
+//! is played.
 
 use anyhow::Context;
+use tenax_frames::settings::named;
 use tenax_hal_shim::flash::{BLANK, FlashArea, FlashFailed, Sector};
+use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::words::Kept;
 use tenax_logic::config::Config;
 use tenax_logic::device::Device;
 use tenax_logic::emg::model::EmgModel;
 use tenax_logic::setting::SettingId;
 use tenax_logic::store::{Erase, open, payload};
-use tenax_scene::plant::{Calibrated, Plant};
+use tenax_scene::plant::{Calibrated, Pins, Plant};
 
 pub const STORE: u64 = 0x0804_0000;
 pub const SECTOR_WORDS: usize = 128 * 1024 / 4;
@@ -24,6 +27,52 @@ pub fn model_of(calibrated: &Calibrated) -> anyhow::Result<EmgModel> {
     }
     .map_err(|refusal| anyhow::anyhow!("{refusal}"))
     .context("the wearer's calibration")
+}
+
+/// Settings by name. Fails if one is none or out of its range.
+pub fn config_of(settings: &[(String, i32)]) -> anyhow::Result<Config> {
+    let mut config = Config::default();
+    for (name, value) in settings {
+        let range = |range: std::ops::RangeInclusive<i32>| {
+            anyhow::anyhow!("{name} = {value}: it may be {} to {}", range.start(), range.end())
+        };
+        config.set(named(name)?, *value).map_err(range)?;
+    }
+    Ok(config)
+}
+
+/// A plant at a board whose flash holds settings.
+pub struct Set<P> {
+    pub plant: P,
+    settings: Option<Vec<u8>>,
+}
+
+impl<P: Plant> Set<P> {
+    pub fn new(plant: P, settings: &[(String, i32)]) -> anyhow::Result<Self> {
+        let mut config = config_of(settings)?;
+        config.line_trusted |= plant.trusts_line();
+        let settings = (!settings.is_empty()).then(|| payload::of_settings(&config).to_vec());
+        Ok(Self { plant, settings })
+    }
+}
+
+impl<P: Plant> Plant for Set<P> {
+    fn within(&self) -> Option<&dyn Plant> {
+        Some(&self.plant)
+    }
+
+    fn within_mut(&mut self) -> Option<&mut dyn Plant> {
+        Some(&mut self.plant)
+    }
+
+    fn scan(&mut self, drive: MotorDrive) -> &Pins {
+        self.plant.scan(drive)
+    }
+
+    fn kept(&self) -> Vec<(Kept, Vec<u8>)> {
+        let own = self.settings.iter().map(|payload| (Kept::Settings, payload.clone()));
+        own.chain(self.plant.kept()).collect()
+    }
 }
 
 #[derive(Clone, Debug, Default)]

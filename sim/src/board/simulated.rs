@@ -31,27 +31,23 @@ pub enum Grips {
     Constant(f64),
 }
 
-/// Runs the plant to its end and keeps everything. `progress` is told the virtual time now and then, s.
-pub fn run<P: Plant>(plant: P, progress: &mut dyn FnMut(f64)) -> (Run, P) {
+/// Runs the plant to its end and keeps everything.
+pub fn run<P: Plant>(plant: P) -> (Run, P) {
     let mut run = Run::default();
-    let (summary, plant) = record(plant, &mut run, progress);
+    let (summary, plant) = record(plant, Grips::Reflex(DetectorSet::ALL), &mut run, &mut |_| {});
     run.summary = summary;
     (run, plant)
 }
 
-/// Runs the plant to its end under the fingertip; `recorder` is told of it as it goes.
+/// Runs the plant to its end; `recorder` is told of it as it goes, `progress` the virtual time now and then, s.
 pub fn record<P: Plant>(
     mut plant: P,
+    grips: Grips,
     recorder: &mut dyn Recorder,
     progress: &mut dyn FnMut(f64),
 ) -> (Summary, P) {
-    let summary = closed_loop(&mut plant, Grips::Reflex(DetectorSet::ALL), recorder, progress);
+    let summary = closed_loop(&mut plant, grips, recorder, progress);
     (summary, plant)
-}
-
-pub fn run_with<P: Plant>(mut plant: P, grips: Grips, progress: &mut dyn FnMut(f64)) -> P {
-    let _kept_by_the_plant = closed_loop(&mut plant, grips, &mut (), progress);
-    plant
 }
 
 /// The same for every plant, or the logic would be compiled once for each: 8 s in all that runs one.
@@ -61,19 +57,9 @@ fn closed_loop(
     recorder: &mut dyn Recorder,
     progress: &mut dyn FnMut(f64),
 ) -> Summary {
-    let detectors = match grips {
-        Grips::Reflex(detectors) => detectors,
-        Grips::Bound | Grips::Constant(_) => DetectorSet::NONE,
-    };
-    let mut board = Stepper::new(plant, detectors, recorder);
-    let mut ahead = Ahead::default();
+    let mut board = Stepper::new(plant, grips, recorder);
     for frame in 0..frames_in(plant.duration_s()) {
-        let goes_on = board.frame(plant, recorder, &mut |own, fingertip, plant| match grips {
-            Grips::Reflex(_) => own,
-            Grips::Bound => ahead.drive(own, fingertip, plant.planned()),
-            Grips::Constant(target_n) => ahead.drive(own, fingertip, plant.closing_to(target_n)),
-        });
-        if !goes_on {
+        if !board.frame(plant, recorder) {
             break;
         }
         if frame % PROGRESS_FRAMES == 0 {
@@ -83,9 +69,6 @@ fn closed_loop(
     board.end()
 }
 
-/// The drive of the next frame, by the logic's own.
-pub type Choose<'a> = dyn FnMut(MotorDrive, &Fingertip, &dyn Plant) -> MotorDrive + 'a;
-
 /// The board between two frames.
 pub struct Stepper {
     pub device: Device,
@@ -94,11 +77,12 @@ pub struct Stepper {
     down: Downlink,
     frames: u32,
     drive: MotorDrive,
+    grips: Grips,
+    ahead: Ahead,
 }
 
 impl Stepper {
-    /// `detectors`: those that the reflex acts on.
-    pub fn new(plant: &dyn Plant, detectors: DetectorSet, recorder: &mut dyn Recorder) -> Self {
+    pub fn new(plant: &dyn Plant, grips: Grips, recorder: &mut dyn Recorder) -> Self {
         let provision = Provision::of(plant).expect("a plant's wearer is one");
         let mut device = provision.device();
         let summary = Summary {
@@ -114,19 +98,35 @@ impl Stepper {
                 up.post(Up::Restored(restored), recorder);
             }
         }
-        device.fingertip.act_on(detectors);
-        let store = Store::new(Sectors::provisioned(&provision));
-        Self { device, store, up, down: Downlink::default(), frames: 0, drive: MotorDrive::Coast }
+        device.fingertip.act_on(match grips {
+            Grips::Reflex(detectors) => detectors,
+            Grips::Bound | Grips::Constant(_) => DetectorSet::NONE,
+        });
+        Self {
+            device,
+            store: Store::new(Sectors::provisioned(&provision)),
+            up,
+            down: Downlink::default(),
+            frames: 0,
+            drive: MotorDrive::Coast,
+            grips,
+            ahead: Ahead::default(),
+        }
     }
 
-    /// Goes on by a frame; `choose` has the last word about its drive. False: the board was reset.
-    pub fn frame(
+    /// Goes on by a frame. False: the board was reset.
+    pub fn frame(&mut self, plant: &mut dyn Plant, recorder: &mut dyn Recorder) -> bool {
+        self.frame_with(plant, recorder, &|own, _| own)
+    }
+
+    /// As [`Stepper::frame`]; `choose` has the last word about the drive.
+    pub fn frame_with(
         &mut self,
         plant: &mut dyn Plant,
         recorder: &mut dyn Recorder,
-        choose: &mut Choose<'_>,
+        choose: &dyn Fn(MotorDrive, &Fingertip) -> MotorDrive,
     ) -> bool {
-        let Self { device, store, up, down, .. } = self;
+        let Self { device, store, up, down, ahead, .. } = self;
         let sequence = self.frames;
         up.count(down.counters(sequence), recorder);
         let select = Frame::lost(sequence).select();
@@ -152,7 +152,13 @@ impl Stepper {
         }
         device.fingertip.button(plant.button());
         let frame = Frame::from_scans(sequence, &scans);
-        self.drive = choose(device.tick(&frame), &device.fingertip, plant);
+        let own = device.tick(&frame);
+        let fingertip = &device.fingertip;
+        self.drive = match self.grips {
+            Grips::Reflex(_) => choose(own, fingertip),
+            Grips::Bound => ahead.drive(own, fingertip, plant.planned()),
+            Grips::Constant(target_n) => ahead.drive(own, fingertip, plant.closing_to(target_n)),
+        };
         while let Some(message) = device.next_message() {
             up.post(message, recorder);
         }

@@ -19,7 +19,8 @@ pub fn gripped(file: &SceneFile, seed: u64, grips: Grips) -> Fate {
 
 fn fate(file: &SceneFile, world: World, grips: Grips) -> Fate {
     let span_s = (0.0, seconds_of(frames_in(file.duration_s())));
-    let plant = simulated::run_with(Drawn::new(world, span_s, Teller::default()), grips, &mut |_| {});
+    let plant = Drawn::new(world, span_s, Teller::default());
+    let (_kept_by_the_plant, plant) = simulated::record(plant, grips, &mut (), &mut |_| {});
     Fate::of(plant.world.truth(), file)
 }
 

@@ -98,7 +98,7 @@ fn the_image_decides_every_scene_as_the_host() {
 #[test]
 fn the_simulated_board_keeps_the_images_time() {
     let image = plain();
-    let (host, _) = simulated::run(Swing::new(image.virtual_s), &mut |_| {});
+    let (host, _) = simulated::run(Swing::new(image.virtual_s));
     assert!(host.scans == image.scans);
     assert_eq!(host.drives, image.drives);
     assert_eq!(host.slows, image.slows);

@@ -88,7 +88,7 @@ fn a_hang_and_a_panic_stop_a_driven_motor_and_the_next_start_says_so() {
 // Shows B1.
 #[test]
 fn a_hang_and_a_panic_end_a_vibration() {
-    let (host, _) = simulated::run(scene("vibrates"), &mut |_| {});
+    let (host, _) = simulated::run(scene("vibrates"));
     let at_s = |frame: u32| f64::from(frame) / 2_000.0;
     let fails_s = at_s(host.feedback[0].0) + 0.02;
     for (mishap, within_s) in [(Mishap::CoreHangs, 0.15), (Mishap::DmaFails, 0.03)] {

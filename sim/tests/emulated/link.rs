@@ -73,7 +73,7 @@ fn the_hosts_board_says_on_its_line_what_the_image_says() {
         swing.sending(0.306, Down::Settings(17)).sending(0.306, Down::Zero).at_rest()
     };
     let (image, image_times) = messages(&run(plant(), &Options::default()).line, 2_000);
-    let (host, host_times) = messages(&simulated::run(plant(), &mut |_| {}).0.line, 2_000);
+    let (host, host_times) = messages(&simulated::run(plant()).0.line, 2_000);
     assert!(matches!(image[0], Up::Hello { .. }));
     assert!(image.iter().any(|up| matches!(up, Up::Saved { .. })), "the setting was saved");
     assert_eq!(host, image);
