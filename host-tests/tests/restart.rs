@@ -60,11 +60,3 @@ fn a_mark_counts_only_after_a_reset_by_software() {
     // RAM at power-on may hold any word, and a pin's reset leaves an old one.
     assert_eq!(judge(PIN, Some(Mark::Panicked), 3).after, None);
 }
-
-// Shows B2.
-#[test]
-fn a_hand_that_browns_out_at_each_closing_stays_off_and_one_without_a_clock_does_not() {
-    let restarts = |flags, mark| (0..20).fold(0, |kept, _| judge(flags, mark, kept).restarts);
-    assert!(restarts(BROWN_OUT, None) > RESTARTS_MAX);
-    assert_eq!(restarts(SOFTWARE, Some(Mark::CrystalLost)), 0, "the control");
-}
