@@ -93,34 +93,25 @@ fn thirty_cuts_while_saving_leave_each_time_the_setting_before() {
 
 // Shows B7.
 #[test]
-fn sampling_loses_nothing_while_the_network_is_saved() {
+fn sampling_loses_nothing_while_the_network_is_saved_whatever_the_line_carries() {
     let plant = || Swing::new(1.0).sending(0.3, Down::Save);
-    let run_with = |word_us| run(plant(), &Options { word_us, ..Options::default() });
-    let slow_flash = run_with(100);
-    assert_eq!(kept(&slow_flash), [Kept::Network]);
+    let slow_flash = |plant| run(plant, &Options { word_us: 100, ..Options::default() });
+    let stream = Down::Stream { raw: true, senses: true, hold_s: 10 };
+    let [plain, streaming] = [plant(), plant().sending(0.2, stream)].map(slow_flash);
     assert_eq!(
-        slow_flash.flash.words, 80,
+        plain.flash.words, 80,
         "a mark and a record; the sector was opened for the setting that trusts the line"
     );
-    let counters = slow_flash.counters;
-    assert_eq!((counters.overruns, counters.frames_lost, counters.ticks_late), (0, 0, 0), "{counters:?}");
-    assert_eq!((counters.telemetry_dropped, slow_flash.messages_missed), (0, 0));
-    agrees("slow flash", &slow_flash);
+    assert_eq!((plain.counters.telemetry_dropped, plain.messages_missed), (0, 0));
+    for run in [plain, streaming] {
+        let counters = run.counters;
+        assert_eq!(kept(&run), [Kept::Network]);
+        assert_eq!((counters.overruns, counters.frames_lost, counters.ticks_late), (0, 0, 0), "{counters:?}");
+        agrees("slow flash", &run);
+    }
     // The control: the core does stand still meanwhile. A flash twenty times as slow as any costs frames.
-    let hopeless = run_with(2_000);
+    let hopeless = run(plant(), &Options { word_us: 2_000, ..Options::default() });
     assert!(hopeless.counters.frames_lost > 0, "{:?}", hopeless.counters);
-}
-
-// Shows B7.
-#[test]
-fn a_word_is_not_begun_just_before_a_frame_whatever_the_line_carries() {
-    let stream = Down::Stream { raw: true, senses: true, hold_s: 10 };
-    let plant = Swing::new(2.0).sending(0.2, stream).sending(0.5, Down::Save);
-    let run = run(plant, &Options { word_us: 100, ..Options::default() });
-    assert_eq!(kept(&run), [Kept::Network]);
-    let counters = run.counters;
-    assert_eq!((counters.overruns, counters.frames_lost, counters.ticks_late), (0, 0, 0), "{counters:?}");
-    agrees("stream and save", &run);
 }
 
 // Shows B6.
