@@ -12,19 +12,11 @@ pub fn text(seed: u64, minutes: u32) -> String {
         r#"# Drawn from seed {seed} by sim/src/disturbances.rs.
 name = "{NAME}"
 title = "An hour of disturbances in a hand that holds a glass; nothing slips"
-from = "the disturbances that run through every experiment"
+base = "glass"
+without = ["muscle", "move", "swing", "fill", "knock", "wet"]
 duration_s = {duration}
-slip_floor_mm_s = 1.0           # as scenes/glass.toml
 [contact]
 level = "l1"                    # what swings lets rings of the pad go without sliding
-mu_s = 0.50                     # as scenes/glass.toml
-mu_d = 0.44                     # as scenes/glass.toml
-pad_length_mm = 18              # as scenes/glass.toml
-pitch_mm = 1.0                  # as scenes/glass.toml
-[object]
-mass_kg = 0.25                  # as scenes/glass.toml
-width_mm = 70                   # as scenes/glass.toml
-stiffness_n_per_mm = 3.0        # as scenes/glass.toml
 [[muscle]]
 at_s = 1.0
 for_s = 4.0
