@@ -11,7 +11,7 @@ use std::thread::{self, JoinHandle};
 use tenax_frames::serve::{Options, Server, Tally};
 use tenax_scene::SceneFile;
 use tenax_sim::live::{Live, Person, Use};
-use tenax_sim::session::{Board, scene_alone};
+use tenax_sim::session::{Board, scene_served};
 
 pub const BENCH: &str = include_str!("../../scenes/parts/bench.toml");
 
@@ -102,8 +102,8 @@ impl Serving {
         let run = thread::spawn(move || {
             loop {
                 let live = Live::new(down.clone(), runs.clone());
-                let line = Use { live: Some(live), ..Use::default() };
-                scene_alone(&file, 1, &Board::Host, line, &mut server).unwrap();
+                let line = Use { live: Some(live), without_bound: true, ..Use::default() };
+                scene_served(&file, 1, &Board::Host, line, &mut server, &mut |_| {}).unwrap();
                 if !runs.lets_go() || ends.load(Relaxed) {
                     return server.close();
                 }

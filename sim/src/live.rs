@@ -113,24 +113,24 @@ impl Pace {
 
 #[derive(Default)]
 pub struct Use {
+    /// None: as fast as it goes, and nobody sends anything.
     pub live: Option<Live>,
     pub streams_at_start: bool,
+    /// Of a scene; the bound's search takes up to ten times as long as the run.
+    pub without_bound: bool,
     /// Ends the run before its time.
     pub stop: Arc<AtomicBool>,
 }
 
 impl Use {
     pub fn of<P>(self, plant: P) -> Served<P> {
-        Served { plant, live: self.live, streams_at_start: self.streams_at_start, stop: self.stop }
+        Served { plant, line: self }
     }
 }
 
 pub struct Served<P> {
     pub plant: P,
-    /// None: as fast as it goes, and nobody sends anything.
-    pub live: Option<Live>,
-    pub streams_at_start: bool,
-    pub stop: Arc<AtomicBool>,
+    pub line: Use,
 }
 
 impl<P: Plant> Plant for Served<P> {
@@ -143,7 +143,7 @@ impl<P: Plant> Plant for Served<P> {
     }
 
     fn scan(&mut self, drive: MotorDrive) -> &Pins {
-        if let Some(live) = &mut self.live {
+        if let Some(live) = &mut self.line.live {
             live.pace.wait();
             let act = live.person.hands().acts.pop_front();
             act.into_iter().for_each(|act| self.plant.act(act));
@@ -153,23 +153,23 @@ impl<P: Plant> Plant for Served<P> {
 
     fn line_bytes(&mut self) -> Vec<u8> {
         let mut bytes = self.plant.line_bytes();
-        if let Some(live) = &mut self.live {
+        if let Some(live) = &mut self.line.live {
             bytes.extend(live.bytes());
         }
         bytes
     }
 
     fn button(&self) -> bool {
-        self.plant.button() || self.live.as_ref().is_some_and(|live| live.person.is_pressing())
+        self.plant.button() || self.line.live.as_ref().is_some_and(|live| live.person.is_pressing())
     }
 
     fn kept(&self) -> Vec<(Kept, Vec<u8>)> {
-        let Some(live) = &self.live else { return Vec::new() };
+        let Some(live) = &self.line.live else { return Vec::new() };
         live.person.hands().flash.clone()
     }
 
     fn keep(&mut self, kept: Kept, payload: &[u8]) {
-        if let Some(live) = &self.live {
+        if let Some(live) = &self.line.live {
             let flash = &mut live.person.hands().flash;
             flash.retain(|(own, _)| *own != kept);
             flash.push((kept, payload.to_vec()));
@@ -177,11 +177,11 @@ impl<P: Plant> Plant for Served<P> {
     }
 
     fn resets(&self) -> bool {
-        self.stop.load(Relaxed) || self.live.as_ref().is_some_and(|live| live.person.hands().resets)
+        self.line.stop.load(Relaxed) || self.line.live.as_ref().is_some_and(|live| live.person.hands().resets)
     }
 
     fn streams_at_start(&self) -> bool {
-        self.streams_at_start || self.plant.streams_at_start()
+        self.line.streams_at_start || self.plant.streams_at_start()
     }
 }
 

@@ -142,17 +142,6 @@ pub fn scene(
     scene_served(file, seed, board, Use::default(), &mut (), progress)
 }
 
-/// As [`scene_served`], without the bound, whose search takes up to ten times as long as the run.
-pub fn scene_alone(
-    file: &SceneFile,
-    seed: u64,
-    board: &Board,
-    line: Use,
-    recorder: &mut dyn Recorder,
-) -> anyhow::Result<Outcome> {
-    judged(file, seed, board, line, recorder, &mut |_| {}, &|_| None)
-}
-
 /// As [`scene`], with the board's line used so. `progress` hears of an infinite time while the bound is searched.
 pub fn scene_served(
     file: &SceneFile,
@@ -162,19 +151,6 @@ pub fn scene_served(
     recorder: &mut dyn Recorder,
     progress: &mut dyn FnMut(f64),
 ) -> anyhow::Result<Outcome> {
-    let bound = |truth: &Fate| Some(controls::bound(file, seed, truth));
-    judged(file, seed, board, line, recorder, progress, &bound)
-}
-
-fn judged(
-    file: &SceneFile,
-    seed: u64,
-    board: &Board,
-    line: Use,
-    recorder: &mut dyn Recorder,
-    progress: &mut dyn FnMut(f64),
-    bound: &dyn Fn(&Fate) -> Option<Fate>,
-) -> anyhow::Result<Outcome> {
     let span_s = (0.0, seconds_of(frames_in(file.duration_s())));
     let world = World::new(file, seed);
     let calibrated = world.calibrated().as_ref().map(model_of).transpose()?;
@@ -182,13 +158,12 @@ fn judged(
     let plant = line.of(Drawn::new(world, span_s, teller));
     let mut witness = Witness::new(0.0, span_s, calibrated.as_ref());
     witness.judge.deaf = file.lifts().collect();
-    let (run, Served { mut plant, stop, .. }) =
-        board.record(plant, &mut (&mut witness, recorder), progress)?;
-    ensure!(!stop.load(Relaxed), STOPPED);
+    let (run, Served { mut plant, line }) = board.record(plant, &mut (&mut witness, recorder), progress)?;
+    ensure!(!line.stop.load(Relaxed), STOPPED);
     plant.draw();
     let truth = Fate { grips: std::mem::take(&mut plant.grips), ..Fate::of(plant.world.truth(), file) };
     progress(f64::INFINITY);
-    let bound = bound(&truth);
+    let bound = (!line.without_bound).then(|| controls::bound(file, seed, &truth));
     witness.sketch.needs = Some(plant.needs);
     let (report, mut figure, _) =
         told(&file.name, board.name(), seed, &run, witness, [Some(&truth), bound.as_ref()]);
@@ -227,7 +202,7 @@ pub fn replay_served(
     let span_s = (zero_s.max(recording.first_s() - margin_s), end_s.min(last_s + margin_s));
     let mut witness = Witness::new(zero_s, span_s, calibrated.as_ref());
     let (run, served) = board.record(line.of(plant), &mut (&mut witness, recorder), progress)?;
-    ensure!(!served.stop.load(Relaxed), STOPPED);
+    ensure!(!served.line.stop.load(Relaxed), STOPPED);
     let scene = name_of(path);
     let (mut report, mut figure, timeline) = told(&scene, board.name(), seed, &run, witness, [None; 2]);
     let lead_in_s = recording.first_s() - zero_s;

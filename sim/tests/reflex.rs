@@ -15,7 +15,8 @@ fn seeds(default: u64) -> std::ops::RangeInclusive<u64> {
 }
 
 fn run(scene: &str, seed: u64) -> Outcome {
-    session::scene_alone(&parsed(scene), seed, &Board::Host, Use::default(), &mut ()).unwrap()
+    let line = Use { without_bound: true, ..Use::default() };
+    session::scene_served(&parsed(scene), seed, &Board::Host, line, &mut (), &mut |_| {}).unwrap()
 }
 
 /// Knocks at twice their height, each of which rings for 1 to 30 ms.

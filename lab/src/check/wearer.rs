@@ -14,8 +14,8 @@ const TWO_SLOW_FRAMES_MS: f64 = 25.0;
 pub fn scenes() -> anyhow::Result<Vec<Bar>> {
     let (mut while_active, mut elsewhere, mut slowest_ms, mut opened) = (0, 0, 0f64, 0);
     for (name, _) in builtin() {
-        let outcome =
-            session::scene_alone(&session::load_scene(name)?, 1, &Board::Host, Use::default(), &mut ())?;
+        let (file, line) = (session::load_scene(name)?, Use { without_bound: true, ..Use::default() });
+        let outcome = session::scene_served(&file, 1, &Board::Host, line, &mut (), &mut |_| {})?;
         let wearer = &outcome.report.wearer;
         while_active += wearer.reflex_while_active;
         elsewhere += wearer.reflex_ticks - wearer.reflex_while_active;

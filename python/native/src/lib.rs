@@ -55,10 +55,9 @@ fn drawn(family: Option<&str>, seed: u64, n: u32) -> PyResult<(String, u64)> {
 fn run(py: Python<'_>, scene: &str, seed: u64, bound: bool) -> PyResult<(String, Vec<u8>)> {
     let done = py.detach(|| {
         let (file, mut kept) = (session::load_scene(scene)?, Kept::default());
-        let outcome = match bound {
-            true => session::scene_served(&file, seed, &Board::Host, Use::default(), &mut kept, &mut |_| {}),
-            false => session::scene_alone(&file, seed, &Board::Host, Use::default(), &mut kept),
-        }?;
+        let line = Use { without_bound: !bound, ..Use::default() };
+        let outcome =
+            session::scene_served(&file, seed, &Board::Host, line, &mut kept, &mut |_| {})?;
         Ok((serde_json::to_string(&outcome.report)?, kept.line))
     });
     done.map_err(|error: anyhow::Error| refused(error))

@@ -154,7 +154,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     let stop = stop::on_signals()?;
     let recording = args.record.as_deref().map(Recording::create).transpose()?;
     let mut kept = Kept::create(path("line.bin"), recording, Arc::clone(&stop))?;
-    let line_use = Use { live: live(), streams_at_start: args.record.is_some(), stop };
+    let line_use = Use { live: live(), streams_at_start: args.record.is_some(), stop, ..Use::default() };
     let mut no_server = ();
     let to_server = server.as_mut().map_or::<&mut dyn Recorder, _>(&mut no_server, |own| own);
     let recorder = &mut (&mut kept, to_server);
@@ -296,8 +296,8 @@ fn again_and_again(
     live: &dyn Fn() -> Option<Live>,
 ) -> anyhow::Result<ExitCode> {
     for seed in seed.. {
-        let line = Use { live: live(), ..Use::default() };
-        let outcome = session::scene_alone(file, seed, board, line, server)?;
+        let line = Use { live: live(), without_bound: true, ..Use::default() };
+        let outcome = session::scene_served(file, seed, board, line, server, &mut |_| {})?;
         let fate = if outcome.truth.dropped { "DROPPED" } else { "kept" };
         let how = if person.lets_go() { "is reset" } else { "is switched on anew" };
         out::note!("{}, seed {seed}: {fate}; the board {how}", file.name);
