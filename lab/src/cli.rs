@@ -24,15 +24,27 @@ struct Cli {
     command: Command,
 }
 
+const ARRAY: &str = "The force array's network: python -m tenax.train --help (docs/array.md).";
+
 #[derive(Debug, Subcommand)]
 enum Command {
     Check(check::Args),
     Learn(learn::Args),
     Dataset(dataset::Args),
-    Train(train::Args),
-    Evaluate(evaluate::Args),
+    /// Fit intent recognition to recordings of people
+    #[command(subcommand, arg_required_else_help = true, after_help = ARRAY)]
+    Train(Of<train::Args>),
+    /// Score intent recognition on recordings of people
+    #[command(subcommand, arg_required_else_help = true)]
+    Evaluate(Of<evaluate::Args>),
     Chart(chart::Args),
     Vision(vision::Args),
+}
+
+#[derive(Debug, Subcommand)]
+enum Of<A: clap::Args> {
+    /// Of recorded EMG envelopes of two muscles
+    Emg(A),
 }
 
 /// Runs the command line. 0: done. 1: something measured is not as promised. 2: it could not be run.
@@ -41,8 +53,8 @@ pub fn main() -> ExitCode {
         Command::Check(args) => check::main(&args),
         Command::Learn(args) => learn::main(&args),
         Command::Dataset(args) => dataset::main(&args),
-        Command::Train(args) => train::main(&args),
-        Command::Evaluate(args) => evaluate::main(&args),
+        Command::Train(Of::Emg(args)) => train::main(&args),
+        Command::Evaluate(Of::Emg(args)) => evaluate::main(&args),
         Command::Chart(args) => chart::main(&args),
         Command::Vision(args) => vision::main(&args),
     })

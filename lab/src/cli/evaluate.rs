@@ -7,22 +7,8 @@ use tenax_frames::tool::out;
 use super::People;
 use crate::evaluate::emg;
 
-/// Score intent recognition on recordings of people
 #[derive(Debug, clap::Args)]
-#[command(arg_required_else_help = true)]
 pub struct Args {
-    #[command(subcommand)]
-    what: What,
-}
-
-#[derive(Debug, clap::Subcommand)]
-enum What {
-    /// Score intent recognition on recorded EMG envelopes of two muscles
-    Emg(EmgArgs),
-}
-
-#[derive(Debug, clap::Args)]
-struct EmgArgs {
     #[command(flatten)]
     people: People,
     /// Only these people, by number
@@ -34,7 +20,7 @@ struct EmgArgs {
 }
 
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
-    let What::Emg(EmgArgs { people, persons, faults }) = &args.what;
+    let Args { people, persons, faults } = args;
     let report = emg::evaluate(&people.recordings, persons, *faults, people.seed)?;
     out::unless_closed(people.report.show(&report))?;
     Ok(ExitCode::SUCCESS)

@@ -7,28 +7,8 @@ use tenax_frames::tool::{out, progress::with_bar, workspace};
 use super::People;
 use crate::evaluate::fit;
 
-const EXAMPLES: &str = "\
-Examples:
-  tenax train emg --recordings FOLDER    the constants of intent recognition, leaving out each person once
-
-The force array's network: python -m tenax.train --help (docs/array.md).";
-
-/// Fit intent recognition to recordings of people
 #[derive(Debug, clap::Args)]
-#[command(after_help = EXAMPLES, arg_required_else_help = true)]
 pub struct Args {
-    #[command(subcommand)]
-    what: What,
-}
-
-#[derive(Debug, clap::Subcommand)]
-enum What {
-    /// Fit intent recognition to recorded EMG envelopes of people
-    Emg(EmgArgs),
-}
-
-#[derive(Debug, clap::Args)]
-struct EmgArgs {
     #[command(flatten)]
     people: People,
     /// Rounds of the search; each takes 0.1 s a person
@@ -40,7 +20,7 @@ struct EmgArgs {
 }
 
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
-    let What::Emg(EmgArgs { people, rounds, ship }) = &args.what;
+    let Args { people, rounds, ship } = args;
     let report = with_bar("fitting", |part| fit::fit(&people.recordings, *rounds, people.seed, part))?;
     out::unless_closed(people.report.show(&report))?;
     if *ship {
