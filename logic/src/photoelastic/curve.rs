@@ -64,7 +64,7 @@ fn asin_of_root(part: i32) -> i32 {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use std::f64::consts::PI;
 

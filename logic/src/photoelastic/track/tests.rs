@@ -1,11 +1,7 @@
 use super::*;
+use crate::photoelastic::curve::tests::FIGURE_14;
 use std::f64::consts::FRAC_PI_2;
 
-const FIGURE_14: Curve = Curve {
-    dark_q4: 32_000,
-    bright_q4: 207_000,
-    force_mn: [136, 481, 1_007, 1_700, 2_551, 3_554, 4_706, 6_000],
-};
 const OPEN: Hints = Hints { unloaded: true, force_mn: None };
 const NOTHING: Hints = Hints { unloaded: false, force_mn: None };
 
@@ -33,25 +29,6 @@ fn ramp(tracker: &mut Tracker, from: (f64, f64), to: (f64, f64), cycles: u32, hi
                 "{force:?} for {force_n} N, {q}: {:?}",
                 tracker.track()
             );
-        }
-    }
-}
-
-#[test]
-fn whatever_the_shear_the_force_is_within_what_is_said() {
-    for seed in 1..=400_u64 {
-        let mut state = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15);
-        let mut between = |low: f64, high: f64| {
-            state ^= state << 13;
-            state ^= state >> 7;
-            state ^= state << 17;
-            low + (high - low) * (state >> 11) as f64 / (1_u64 << 53) as f64
-        };
-        let (mut tracker, mut at) = (opened(), (0.0, 0.0));
-        for _ in 0..6 {
-            let to = (between(0.0, 5.9), between(0.0, 0.5));
-            ramp(&mut tracker, at, to, between(20.0, 200.0) as u32, NOTHING);
-            at = to;
         }
     }
 }
