@@ -72,15 +72,6 @@ impl Plant for Manned {
     }
 }
 
-#[derive(Default)]
-struct Tape(Vec<u8>);
-
-impl Recorder for Tape {
-    fn line(&mut self, bytes: &[u8]) {
-        self.0.extend_from_slice(bytes);
-    }
-}
-
 struct Hand {
     plant: Manned,
     board: Stepper,
@@ -156,7 +147,7 @@ pub struct Bench {
     seed: u64,
     settings: Vec<(String, i32)>,
     hand: Hand,
-    tape: Tape,
+    tape: Vec<u8>,
     beside: Option<Hand>,
     pub talker: Talker,
     frames: u32,
@@ -167,7 +158,7 @@ impl Bench {
     /// Fails on an unknown scene, or a setting that is none or out of its range.
     pub fn new(name: &str, seed: u64, settings: Vec<(String, i32)>, beside: &str) -> Result<Self, String> {
         let file = file(name)?;
-        let mut tape = Tape::default();
+        let mut tape = Vec::new();
         let all = Grips::Reflex(DetectorSet::ALL);
         let hand = Hand::new(set(&file, seed, &settings)?, all, &mut tape);
         let until = frames_in(file.duration_s());
@@ -253,7 +244,7 @@ impl Bench {
                 break;
             }
         }
-        let line = std::mem::take(&mut self.tape.0);
+        let line = std::mem::take(&mut self.tape);
         self.hand.plant.down.extend(self.talker.go_on(&line, seconds_of(self.frames)));
     }
 

@@ -60,7 +60,6 @@ pub struct Run {
     pub summary: Summary,
     pub scans: Vec<Scan>,
     pub drives: Vec<MotorDrive>,
-    pub slipping: Vec<bool>,
     pub slows: Vec<Slow>,
     pub line: Vec<u8>,
 }

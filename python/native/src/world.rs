@@ -44,7 +44,7 @@ struct Watch {
 }
 
 impl Recorder for Watch {
-    fn scan(&mut self, codes: &Scan, _drive: MotorDrive, _slipping: bool) {
+    fn scan(&mut self, codes: &Scan, _drive: MotorDrive) {
         let (frame, first) = (self.scans / SCANS_PER_FRAME, self.scans.is_multiple_of(SCANS_PER_FRAME));
         self.scans += 1;
         let slot = &SCHEDULE[frame % SLOTS];

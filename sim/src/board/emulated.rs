@@ -136,8 +136,8 @@ fn closed_loop(
         let emulator = scope.spawn(move || execute(&images, board, watched, world));
         for Stretch { scans, line } in reports {
             scanned += scans.len();
-            for (codes, drive, slipping) in scans {
-                recorder.scan(&codes, drive, slipping);
+            for (codes, drive) in scans {
+                recorder.scan(&codes, drive);
             }
             heard.hear(&mut inbox, &line, frames, recorder);
             progress(scanned as f64 / f64::from(SCAN_HZ));

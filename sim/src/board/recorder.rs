@@ -7,7 +7,7 @@ use tenax_hal_shim::wire::Slow;
 use super::Run;
 
 pub trait Recorder {
-    fn scan(&mut self, _codes: &Scan, _drive: MotorDrive, _slipping: bool) {}
+    fn scan(&mut self, _codes: &Scan, _drive: MotorDrive) {}
 
     fn slow(&mut self, _slow: &Slow) {}
 
@@ -17,9 +17,9 @@ pub trait Recorder {
 impl Recorder for () {}
 
 impl<A: Recorder + ?Sized, B: Recorder + ?Sized> Recorder for (&mut A, &mut B) {
-    fn scan(&mut self, codes: &Scan, drive: MotorDrive, slipping: bool) {
-        self.0.scan(codes, drive, slipping);
-        self.1.scan(codes, drive, slipping);
+    fn scan(&mut self, codes: &Scan, drive: MotorDrive) {
+        self.0.scan(codes, drive);
+        self.1.scan(codes, drive);
     }
 
     fn slow(&mut self, slow: &Slow) {
@@ -33,11 +33,17 @@ impl<A: Recorder + ?Sized, B: Recorder + ?Sized> Recorder for (&mut A, &mut B) {
     }
 }
 
+/// The line alone.
+impl Recorder for Vec<u8> {
+    fn line(&mut self, bytes: &[u8]) {
+        self.extend_from_slice(bytes);
+    }
+}
+
 impl Recorder for Run {
-    fn scan(&mut self, codes: &Scan, drive: MotorDrive, slipping: bool) {
+    fn scan(&mut self, codes: &Scan, drive: MotorDrive) {
         self.scans.push(*codes);
         self.drives.push(drive);
-        self.slipping.push(slipping);
     }
 
     fn slow(&mut self, slow: &Slow) {

@@ -136,7 +136,7 @@ impl Stepper {
             *scan = scan_of_pins(&plant.scan(self.drive).codes(), select);
             commands.extend(plant.commands().into_iter().map(|message| down.number(message)));
             down.take(&plant.line_bytes());
-            recorder.scan(scan, self.drive, plant.slipping());
+            recorder.scan(scan, self.drive);
         }
         commands.extend(down.command(sequence));
         for command in &commands {

@@ -183,7 +183,7 @@ impl Judge {
 }
 
 impl Recorder for Judge {
-    fn scan(&mut self, codes: &Scan, drive: MotorDrive, _slipping: bool) {
+    fn scan(&mut self, codes: &Scan, drive: MotorDrive) {
         self.scans.push(*codes);
         if self.scans.len() == SCANS_PER_FRAME {
             self.muscles.take(self.active.len(), &self.scans);

@@ -36,8 +36,8 @@ impl Witness {
 }
 
 impl Recorder for Witness {
-    fn scan(&mut self, codes: &Scan, drive: MotorDrive, slipping: bool) {
-        self.judge.scan(codes, drive, slipping);
+    fn scan(&mut self, codes: &Scan, drive: MotorDrive) {
+        self.judge.scan(codes, drive);
     }
 
     fn slow(&mut self, slow: &Slow) {

@@ -38,7 +38,7 @@ const REPORT_SCANS: usize = SCANS_PER_FRAME * FRAMES_PER_SLOW_FRAME as usize;
 
 #[derive(Debug, Default)]
 pub struct Stretch {
-    pub scans: Vec<(Scan, MotorDrive, bool)>,
+    pub scans: Vec<(Scan, MotorDrive)>,
     pub line: Vec<u8>,
 }
 
@@ -149,7 +149,7 @@ impl World {
             if let Some(coupling) = self.coupling {
                 coupling.add(&mut self.codes, drive, wires.bridge_begins_us());
             }
-            self.stretch.scans.push((self.codes, drive, plant.slipping()));
+            self.stretch.scans.push((self.codes, drive));
             self.scanned += 1;
         } else {
             self.drained += 1;
