@@ -15,82 +15,300 @@ use super::quantity::{
     Newtons, NewtonsMax, Part, Play, Pulling, RingHertz, Speed, Stiffness, Velocity,
 };
 
+/// A table's struct refuses keys that it does not have.
+macro_rules! tables {
+    ($($(#[$own:meta])* pub struct $name:ident { $($fields:tt)* })*) => {$(
+        $(#[$own])*
+        #[derive(Clone, Debug, Deserialize)]
+        #[serde(deny_unknown_fields)]
+        pub struct $name { $($fields)* }
+    )*};
+}
+
+tables! {
+    pub struct Contact {
+        pub level: Level,
+        pub mu_s: Mu,
+        /// Dynamic friction, at most `mu_s`.
+        pub mu_d: Spanned<Mu>,
+        pub pad_length_mm: Millimetres,
+        pub pitch_mm: Millimetres,
+        pub mu_per_decade: Part,
+        pub patch_radius_mm: Millimetres,
+        /// Stiffness and damping of a patch (`l1`).
+        pub skin_n_per_mm: Stiffness,
+        pub skin_ms: Milliseconds,
+    }
+
+    pub struct Wet {
+        pub at_s: Instant,
+        pub until_s: Option<Instant>,
+        pub ramp_ms: Milliseconds,
+        pub mu_s: Mu,
+        pub mu_d: Spanned<Mu>,
+    }
+
+    pub struct Object {
+        pub mass_kg: Kilograms,
+        pub width_mm: Millimetres,
+        pub stiffness_n_per_mm: Stiffness,
+        pub crush_n: Option<Newtons>,
+        pub break_n: Option<Newtons>,
+    }
+
+    pub struct Pitch {
+        pub offset_mm: Lever,
+        pub hang_mm: Lever,
+        pub gyration_mm: Millimetres,
+    }
+
+    pub struct Table {
+        pub mat_n_per_mm: Stiffness,
+        pub damping: Damping,
+    }
+
+    pub struct Fill {
+        pub at_s: Instant,
+        pub for_s: Duration,
+        pub add_kg: Spanned<KilogramsAdded>,
+    }
+
+    pub struct Gripper {
+        pub speed_mm_s: Speed,
+        pub force_n: NewtonsMax,
+        pub dead_time_ms: DeadTime,
+        pub range_mm: Millimetres,
+        pub opening_mm: Spanned<Millimetres>,
+        /// The least change of the opening, of a position-controlled gripper; 0 is none.
+        pub step_mm: Play,
+    }
+
+    pub struct Move {
+        pub at_s: Instant,
+        pub for_s: Duration,
+        pub to_mm: Height,
+    }
+
+    pub struct Swing {
+        pub at_s: Instant,
+        pub cycles: NonZeroU8,
+        pub rate_hz: Hertz,
+        pub peak_m_s2: Acceleration,
+    }
+
+    pub struct Robot {
+        pub probe_kg: Kilograms,
+        pub stiffness_n_per_mm: Stiffness,
+        pub damping: Damping,
+        pub ramp_ms: Milliseconds,
+    }
+
+    pub struct Press {
+        pub at_s: Instant,
+        pub for_s: Duration,
+        pub load_n: Newtons,
+    }
+
+    pub struct Sweep {
+        pub at_s: Instant,
+        pub for_s: Duration,
+        pub speed_mm_s: Velocity,
+    }
+
+    pub struct Pull {
+        pub at_s: Instant,
+        pub for_s: Duration,
+        pub force_n: Pulling,
+        pub ramp_ms: Milliseconds,
+        #[serde(default)]
+        pub takes: bool,
+    }
+
+    /// The PVDF films. Voltages are at the film; the front end multiplies them by `gain`.
+    pub struct Pvdf {
+        pub gain: Gain,
+        pub spread: Part,
+        pub film_decades: Part,
+        pub film_directions: Part,
+        pub high_pass_hz: Hertz,
+        pub skin_ms: Milliseconds,
+        pub normal_mv_per_n: Gain,
+        pub shear_mv_per_n: Gain,
+        pub release_mv_per_n: Gain,
+        pub texture_mv_per_n: Gain,
+        pub texture_half_mm_s: Speed,
+        /// Noise of an object settling in the grasp, rms, for 1 N/s of change of the grip force.
+        pub adjust_mv_per_n_s: Gain,
+        pub motor_mv: Millivolts,
+        pub motor_hz: Hertz,
+        pub mains_mv: Millivolts,
+        pub mains_hz: Hertz,
+        /// Broadband noise up to half the frame rate, rms.
+        pub noise_mv: Millivolts,
+    }
+
+    pub struct Fsr {
+        pub hysteresis: Part,
+        pub creep: Part,
+        pub creep_s: Duration,
+        /// Gains of quadrants A to D.
+        pub gains: [Gain; FSR_COUNT],
+        /// Where the load lies beside the pad's middle, along the shear and across it.
+        pub aside_mm: [Lever; 2],
+        /// Noise of a reading, rms, as a part of it.
+        pub noise: Part,
+    }
+
+    pub struct Myo {
+        /// Rise of the envelope from 10 to 90 %.
+        pub rise_ms: Milliseconds,
+        pub tone_mv: Millivolts,
+        pub noise_mv: Millivolts,
+        /// Wandering of a contraction, rms, as a part of it.
+        pub ripple: Part,
+        pub crosstalk: Part,
+        pub mains_mv: Millivolts,
+    }
+
+    pub struct Strain {
+        pub normal_mv_per_n: Gain,
+        pub shear_mv_per_n: Gain,
+        pub spread: Part,
+        pub offset_mv: Millivolts,
+        pub drift_mv_per_min: Millivolts,
+        pub creep: Part,
+        pub creep_s: Duration,
+        pub noise_mv: Millivolts,
+    }
+
+    pub struct Array {
+        pub mv_per_n: Gain,
+        pub spread: Part,
+        pub offset_mv: Millivolts,
+        pub tilt: Part,
+        pub slip_part: Part,
+        pub rim_part: Part,
+        pub renews_um: Micrometres,
+        pub uneven: Part,
+        pub knock_mn_per_mv: Gain,
+        pub motor_part: Part,
+        pub place_mm: Lever,
+        /// Which array it is: its gains and offsets. The scene's seed decides if it is not said.
+        pub specimen: Option<u32>,
+        pub noise_mv: Millivolts,
+    }
+
+    /// The camera behind a clear skin, as the summary that its computer sends.
+    pub struct Skin {
+        pub rate_hz: Hertz,
+        pub delay_ms: DeadTime,
+        pub force_noise_mn: Millinewtons,
+        pub angle_noise_deg: Degrees,
+        /// Points that move though nothing does, rms, in 1/10,000 of the picture.
+        pub speckle_e4: Gain,
+        pub wrong_part: Part,
+        pub wrong_pictures: Gain,
+        pub dark_from_s: Option<Instant>,
+    }
+
+    pub struct Camera {
+        pub pixel_mm: Millimetres,
+        pub rate_hz: Hertz,
+        pub jitter_px: Part,
+        pub delay_ms: DeadTime,
+        pub teaches: bool,
+    }
+
+    /// A photoelastic head in the place of PVDF film 12 (Dubey 2006). The board has to be told: `head-photoelastic-flag`.
+    pub struct Photoelastic {
+        pub strip: bool,
+        pub mu_s: Mu,
+        pub mu_d: Mu,
+        pub stribeck_mm_s: Speed,
+        pub share: Part,
+        pub polariser_deg: Degrees,
+        pub dark_mv: Millivolts,
+        pub span_mv: Millivolts,
+        pub spread: Part,
+        pub drift: Part,
+        pub ambient_mv: Millivolts,
+        pub knock_mn_per_mv: Gain,
+        pub noise_mv: Millivolts,
+    }
+
+    pub struct Muscle {
+        pub at_s: Instant,
+        pub for_s: Duration,
+        pub intent: Intent,
+        pub level_mv: Millivolts,
+        pub until_grip_n: Option<Newtons>,
+    }
+
+    pub struct Command {
+        pub at_s: Instant,
+        pub kind: Spanned<CommandKind>,
+        pub value: Option<Spanned<i32>>,
+        pub duty_permille: Option<Spanned<u16>>,
+        pub for_s: Option<Duration>,
+    }
+
+    pub struct Knock {
+        pub at_s: Instant,
+        pub peak_mv: Millivolts,
+        pub ring_hz: RingHertz,
+        pub decay_ms: Milliseconds,
+        #[serde(default = "Knock::alike")]
+        pub uneven: Part,
+    }
+
+    pub struct Hum {
+        pub at_s: Instant,
+        pub for_s: Duration,
+        pub peak_mv: Millivolts,
+        pub hum_hz: Hertz,
+    }
+
+    /// The motor that tells the wearer by vibrating, and how much of it the films hear. There is none that they hear without this table.
+    pub struct Vibrator {
+        pub film_mv: Millivolts,
+        pub full_hz: Hertz,
+        pub spin_ms: Milliseconds,
+    }
+
+    /// An electrode lifts off the skin: it hears no muscle, and more mains.
+    pub struct ElectrodeLift {
+        pub at_s: Instant,
+        pub for_s: Duration,
+        pub channel: Spanned<ChannelName>,
+        pub pickup_mv: Millivolts,
+    }
+
+    /// Something between the gear's teeth: the motor is blocked, the fingers stand still.
+    pub struct Jam {
+        pub at_s: Instant,
+        pub for_s: Duration,
+    }
+
+    pub struct SensorFault {
+        /// 0 is before the hand is switched on.
+        pub at_s: Instant,
+        pub until_s: Option<Instant>,
+        pub channel: Spanned<ChannelName>,
+        pub kind: FaultKind,
+        pub press_n: Option<Spanned<Newtons>>,
+        /// N/s for a quadrant of the force sensor, mV/s at the pin for any other channel.
+        pub drift_per_s: Option<Spanned<Drift>>,
+        pub with: Option<Spanned<ChannelName>>,
+        #[expect(dead_code, reason = "it explains the file to its reader")]
+        pub reason: String,
+    }
+}
+
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Level {
     L0,
     L1,
-}
-
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Contact {
-    pub level: Level,
-    pub mu_s: Mu,
-    /// Dynamic friction, at most `mu_s`.
-    pub mu_d: Spanned<Mu>,
-    pub pad_length_mm: Millimetres,
-    pub pitch_mm: Millimetres,
-    pub mu_per_decade: Part,
-    pub patch_radius_mm: Millimetres,
-    /// Stiffness and damping of a patch (`l1`).
-    pub skin_n_per_mm: Stiffness,
-    pub skin_ms: Milliseconds,
-}
-
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Wet {
-    pub at_s: Instant,
-    pub until_s: Option<Instant>,
-    pub ramp_ms: Milliseconds,
-    pub mu_s: Mu,
-    pub mu_d: Spanned<Mu>,
-}
-
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Object {
-    pub mass_kg: Kilograms,
-    pub width_mm: Millimetres,
-    pub stiffness_n_per_mm: Stiffness,
-    pub crush_n: Option<Newtons>,
-    pub break_n: Option<Newtons>,
-}
-
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Pitch {
-    pub offset_mm: Lever,
-    pub hang_mm: Lever,
-    pub gyration_mm: Millimetres,
-}
-
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Table {
-    pub mat_n_per_mm: Stiffness,
-    pub damping: Damping,
-}
-
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Fill {
-    pub at_s: Instant,
-    pub for_s: Duration,
-    pub add_kg: Spanned<KilogramsAdded>,
-}
-
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Gripper {
-    pub speed_mm_s: Speed,
-    pub force_n: NewtonsMax,
-    pub dead_time_ms: DeadTime,
-    pub range_mm: Millimetres,
-    pub opening_mm: Spanned<Millimetres>,
-    /// The least change of the opening, of a position-controlled gripper; 0 is none.
-    pub step_mm: Play,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
@@ -110,203 +328,12 @@ impl Arm {
     }
 }
 
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Move {
-    pub at_s: Instant,
-    pub for_s: Duration,
-    pub to_mm: Height,
-}
-
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Swing {
-    pub at_s: Instant,
-    pub cycles: NonZeroU8,
-    pub rate_hz: Hertz,
-    pub peak_m_s2: Acceleration,
-}
-
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Robot {
-    pub probe_kg: Kilograms,
-    pub stiffness_n_per_mm: Stiffness,
-    pub damping: Damping,
-    pub ramp_ms: Milliseconds,
-}
-
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Press {
-    pub at_s: Instant,
-    pub for_s: Duration,
-    pub load_n: Newtons,
-}
-
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Sweep {
-    pub at_s: Instant,
-    pub for_s: Duration,
-    pub speed_mm_s: Velocity,
-}
-
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Pull {
-    pub at_s: Instant,
-    pub for_s: Duration,
-    pub force_n: Pulling,
-    pub ramp_ms: Milliseconds,
-    #[serde(default)]
-    pub takes: bool,
-}
-
-/// The PVDF films. Voltages are at the film; the front end multiplies them by `gain`.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Pvdf {
-    pub gain: Gain,
-    pub spread: Part,
-    pub film_decades: Part,
-    pub film_directions: Part,
-    pub high_pass_hz: Hertz,
-    pub skin_ms: Milliseconds,
-    pub normal_mv_per_n: Gain,
-    pub shear_mv_per_n: Gain,
-    pub release_mv_per_n: Gain,
-    pub texture_mv_per_n: Gain,
-    pub texture_half_mm_s: Speed,
-    /// Noise of an object settling in the grasp, rms, for 1 N/s of change of the grip force.
-    pub adjust_mv_per_n_s: Gain,
-    pub motor_mv: Millivolts,
-    pub motor_hz: Hertz,
-    pub mains_mv: Millivolts,
-    pub mains_hz: Hertz,
-    /// Broadband noise up to half the frame rate, rms.
-    pub noise_mv: Millivolts,
-}
-
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Fsr {
-    pub hysteresis: Part,
-    pub creep: Part,
-    pub creep_s: Duration,
-    /// Gains of quadrants A to D.
-    pub gains: [Gain; FSR_COUNT],
-    /// Where the load lies beside the pad's middle, along the shear and across it.
-    pub aside_mm: [Lever; 2],
-    /// Noise of a reading, rms, as a part of it.
-    pub noise: Part,
-}
-
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Myo {
-    /// Rise of the envelope from 10 to 90 %.
-    pub rise_ms: Milliseconds,
-    pub tone_mv: Millivolts,
-    pub noise_mv: Millivolts,
-    /// Wandering of a contraction, rms, as a part of it.
-    pub ripple: Part,
-    pub crosstalk: Part,
-    pub mains_mv: Millivolts,
-}
-
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Strain {
-    pub normal_mv_per_n: Gain,
-    pub shear_mv_per_n: Gain,
-    pub spread: Part,
-    pub offset_mv: Millivolts,
-    pub drift_mv_per_min: Millivolts,
-    pub creep: Part,
-    pub creep_s: Duration,
-    pub noise_mv: Millivolts,
-}
-
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Array {
-    pub mv_per_n: Gain,
-    pub spread: Part,
-    pub offset_mv: Millivolts,
-    pub tilt: Part,
-    pub slip_part: Part,
-    pub rim_part: Part,
-    pub renews_um: Micrometres,
-    pub uneven: Part,
-    pub knock_mn_per_mv: Gain,
-    pub motor_part: Part,
-    pub place_mm: Lever,
-    /// Which array it is: its gains and offsets. The scene's seed decides if it is not said.
-    pub specimen: Option<u32>,
-    pub noise_mv: Millivolts,
-}
-
-/// The camera behind a clear skin, as the summary that its computer sends.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Skin {
-    pub rate_hz: Hertz,
-    pub delay_ms: DeadTime,
-    pub force_noise_mn: Millinewtons,
-    pub angle_noise_deg: Degrees,
-    /// Points that move though nothing does, rms, in 1/10,000 of the picture.
-    pub speckle_e4: Gain,
-    pub wrong_part: Part,
-    pub wrong_pictures: Gain,
-    pub dark_from_s: Option<Instant>,
-}
-
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Camera {
-    pub pixel_mm: Millimetres,
-    pub rate_hz: Hertz,
-    pub jitter_px: Part,
-    pub delay_ms: DeadTime,
-    pub teaches: bool,
-}
-
-/// A photoelastic head in the place of PVDF film 12 (Dubey 2006). The board has to be told: `head-photoelastic-flag`.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Photoelastic {
-    pub strip: bool,
-    pub mu_s: Mu,
-    pub mu_d: Mu,
-    pub stribeck_mm_s: Speed,
-    pub share: Part,
-    pub polariser_deg: Degrees,
-    pub dark_mv: Millivolts,
-    pub span_mv: Millivolts,
-    pub spread: Part,
-    pub drift: Part,
-    pub ambient_mv: Millivolts,
-    pub knock_mn_per_mv: Gain,
-    pub noise_mv: Millivolts,
-}
-
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Intent {
     Close,
     Open,
     Both,
-}
-
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Muscle {
-    pub at_s: Instant,
-    pub for_s: Duration,
-    pub intent: Intent,
-    pub level_mv: Millivolts,
-    pub until_grip_n: Option<Newtons>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
@@ -351,67 +378,10 @@ impl TryFrom<String> for CommandKind {
     }
 }
 
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Command {
-    pub at_s: Instant,
-    pub kind: Spanned<CommandKind>,
-    pub value: Option<Spanned<i32>>,
-    pub duty_permille: Option<Spanned<u16>>,
-    pub for_s: Option<Duration>,
-}
-
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Knock {
-    pub at_s: Instant,
-    pub peak_mv: Millivolts,
-    pub ring_hz: RingHertz,
-    pub decay_ms: Milliseconds,
-    #[serde(default = "Knock::alike")]
-    pub uneven: Part,
-}
-
 impl Knock {
     const fn alike() -> Part {
         Part::of(0.0)
     }
-}
-
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Hum {
-    pub at_s: Instant,
-    pub for_s: Duration,
-    pub peak_mv: Millivolts,
-    pub hum_hz: Hertz,
-}
-
-/// The motor that tells the wearer by vibrating, and how much of it the films hear. There is none that they hear without this table.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Vibrator {
-    pub film_mv: Millivolts,
-    pub full_hz: Hertz,
-    pub spin_ms: Milliseconds,
-}
-
-/// An electrode lifts off the skin: it hears no muscle, and more mains.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ElectrodeLift {
-    pub at_s: Instant,
-    pub for_s: Duration,
-    pub channel: Spanned<ChannelName>,
-    pub pickup_mv: Millivolts,
-}
-
-/// Something between the gear's teeth: the motor is blocked, the fingers stand still.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Jam {
-    pub at_s: Instant,
-    pub for_s: Duration,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
@@ -433,20 +403,4 @@ pub enum FaultKind {
     Drift,
     Swapped,
     Bridged,
-}
-
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct SensorFault {
-    /// 0 is before the hand is switched on.
-    pub at_s: Instant,
-    pub until_s: Option<Instant>,
-    pub channel: Spanned<ChannelName>,
-    pub kind: FaultKind,
-    pub press_n: Option<Spanned<Newtons>>,
-    /// N/s for a quadrant of the force sensor, mV/s at the pin for any other channel.
-    pub drift_per_s: Option<Spanned<Drift>>,
-    pub with: Option<Spanned<ChannelName>>,
-    #[expect(dead_code, reason = "it explains the file to its reader")]
-    pub reason: String,
 }
