@@ -33,31 +33,18 @@ fn map(column: &str, channel: &str) -> String {
 #[test]
 fn semicolons_decimal_commas_and_no_header_are_named_and_a_recipe_says_them() {
     let layout = "[table]\ndelimiter = ';'\ndecimal = ','\n";
-    let error = run(&case("02_semicolon_header.csv"), &[]).unwrap_err();
-    assert!(error.contains("[table] delimiter = \";\""), "{error}");
-    let read = with_recipe(
-        "02_semicolon_header.csv",
-        &(layout.to_owned() + &map("pvdf_1", "pvdf_1")),
-        &["--explain"],
-    );
-    assert!(
-        read.as_ref()
-            .is_ok_and(|text| text.contains("100 rows of 4 columns") && text.contains("1.65, 1.653, 1.6556")),
-        "{read:?}"
-    );
     let rate = "header = false\n[time]\nrate_hz = 1000\n";
-    let read = with_recipe(
-        "02_semicolon_no_header.csv",
-        &(layout.to_owned() + rate + &map("column_3", "pvdf_1")),
-        &["--explain"],
-    );
-    assert!(
-        read.as_ref()
-            .is_ok_and(|text| text.contains("100 rows of 5 columns") && text.contains("1.65, 1.653, 1.6556")),
-        "{read:?}"
-    );
-    let error = run(&case("02_semicolon_no_header.csv"), &[]).unwrap_err();
-    assert!(error.contains("a recipe says: [table]"), "{error}");
+    for (name, named, more, column, columns) in [
+        ("02_semicolon_header.csv", "[table] delimiter = \";\"", "", "pvdf_1", 4),
+        ("02_semicolon_no_header.csv", "a recipe says: [table]", rate, "column_3", 5),
+    ] {
+        let error = run(&case(name), &[]).unwrap_err();
+        assert!(error.contains(named), "{error}");
+        let recipe = layout.to_owned() + more + &map(column, "pvdf_1");
+        let read = with_recipe(name, &recipe, &["--explain"]).unwrap();
+        let rows = format!("100 rows of {columns} columns");
+        assert!(read.contains(&rows) && read.contains("1.65, 1.653, 1.6556"), "{read}");
+    }
 }
 
 #[test]

@@ -99,28 +99,19 @@ fn anybodys_table_is_read_as_its_recipe_says() {
     let wrong = |layout: &str| {
         Recipe::parse(&with_head(&format!("{layout}\n{map}")), "r.toml").unwrap_err().to_string()
     };
-    assert!(
-        wrong("[table]\ndelimiter = ','\ndecimal = ','").starts_with("r.toml:3: delimiter, decimal"),
-        "{}",
-        wrong("[table]\ndelimiter = ','\ndecimal = ','")
-    );
-    assert!(
-        wrong("[time]\ncolumn = 't'\nrate_hz = 5").starts_with("r.toml:5: give either rate_hz or column")
-    );
+    let twice = wrong("[table]\ndelimiter = ','\ndecimal = ','");
+    assert!(twice.starts_with("r.toml:3: delimiter, decimal"), "{twice}");
+    let both = wrong("[time]\ncolumn = 't'\nrate_hz = 5");
+    assert!(both.starts_with("r.toml:5: give either rate_hz or column"), "{both}");
     assert!(wrong("[table]\nseparator = ','").contains("unknown field `separator`"));
 }
 
 #[test]
 fn a_table_that_is_written_otherwise_is_told_so() {
     for (csv, expected) in [
-        ("t;a\n0,0;1,5\n0,1;1,6\n", "a recipe says: [table] delimiter = \";\""),
         ("t\ta\n0\t1\n1\t2\n", "a recipe says: [table] delimiter = \"\\t\""),
         ("0,1.5\n0.1,1.6\n", "a recipe says: [table] header = false"),
         ("t,a\n0,\"1,5\"\n1,\"1,6\"\n", "a recipe says: [table] decimal = \",\""),
-        (
-            "t,a\n1,5\n1,6\n1,7\n",
-            "every row has the time 1 s; a recipe can say the rows a second: [time] rate_hz",
-        ),
     ] {
         assert!(message(csv).contains(expected), "{csv:?} says {}", message(csv));
     }
