@@ -122,10 +122,6 @@ pub trait Plant: Send {
         self.within()?.closing_to(target_n)
     }
 
-    fn slipping(&self) -> bool {
-        self.within().is_some_and(Plant::slipping)
-    }
-
     fn calibrated(&self) -> Option<Calibrated> {
         self.within()?.calibrated()
     }

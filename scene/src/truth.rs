@@ -1,16 +1,10 @@
 //! The exact log of a world, which a report compares the fingertip with. None of it reaches a pin.
 
-use tenax_hal_shim::channel::{CHANNELS, COUNT, MYO_EXTENSOR, MYO_FLEXOR};
-
-use crate::file::sections::Intent;
 use crate::physics::{TOUCH_N, Touch};
 use crate::schedule::STEP_S;
 use crate::sensor::camera::Seen;
 
 pub const TRACE_HZ: u32 = 200;
-pub const MYO_ON_MV: f64 = 160.0;
-pub const MYO_OFF_MV: f64 = 110.0;
-
 pub const MICRO_PAUSE_S: f64 = 0.050;
 
 const LEFT_MM: f64 = 40.0;
@@ -36,8 +30,6 @@ pub struct Truth {
     pub needed_grip_n: f64,
     /// The least margin while the hand carried the object, and the last, N: the shear that a finger could still carry.
     pub margin_n: Option<[f64; 2]>,
-    pub phases: Vec<Phase>,
-    pub activity: Vec<Activity>,
     pub trace: Vec<Row>,
     pub camera: Vec<Seen>,
     let_go: bool,
@@ -62,22 +54,6 @@ pub struct MicroRun {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Phase {
-    pub intent: Option<Intent>,
-    pub begin_s: f64,
-    pub end_s: Option<f64>,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Activity {
-    /// Index in [`CHANNELS`].
-    pub channel: usize,
-    pub on_s: f64,
-    /// When it fell under [`MYO_OFF_MV`], s. None while it is over.
-    pub off_s: Option<f64>,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Row {
     pub t_s: f64,
     pub grip_n: f64,
@@ -85,9 +61,7 @@ pub struct Row {
     pub mass_kg: f64,
     pub position_mm: f64,
     pub slide_mm_s: f64,
-    pub sticks: bool,
     pub stuck_part: f64,
-    pub pitch_rad: f64,
     /// The least grip force of each finger that would hold at this instant, N; 0 while the hand does not carry.
     pub needed_n: f64,
     pub margin_n: f64,
@@ -169,9 +143,7 @@ impl Truth {
                 mass_kg: state.mass_kg,
                 position_mm: state.position_mm,
                 slide_mm_s: touch.slide_m_s * 1e3,
-                sticks: touch.sticks,
                 stuck_part: touch.stuck_part,
-                pitch_rad: state.pitch_rad,
                 needed_n: state.needed_n,
                 margin_n: state.margin_n,
             });
@@ -240,29 +212,6 @@ impl Truth {
         if step.touch.let_go > 0 && step.touch.normal_n > TOUCH_N {
             self.micro_slips += step.touch.let_go as u64;
             self.micro.get_or_insert(Micro { begin_s: t_s, last_s: t_s }).last_s = t_s;
-        }
-    }
-
-    pub(crate) fn wearer(&mut self, t_s: f64, intent: Option<Intent>, pins_v: &[f64; COUNT]) {
-        match self.phases.last_mut() {
-            Some(last) if last.intent == intent => {}
-            last => {
-                if let Some(last) = last {
-                    last.end_s = Some(t_s);
-                }
-                self.phases.push(Phase { intent, begin_s: t_s, end_s: None });
-            }
-        }
-        for channel in [MYO_FLEXOR, MYO_EXTENSOR] {
-            let above_mv = pins_v[channel] * 1e3 - f64::from(CHANNELS[channel].rest_mv);
-            let open = self.activity.iter_mut().rev().find(|a| a.channel == channel && a.off_s.is_none());
-            match open {
-                Some(activity) if above_mv < MYO_OFF_MV => activity.off_s = Some(t_s),
-                None if above_mv > MYO_ON_MV => {
-                    self.activity.push(Activity { channel, on_s: t_s, off_s: None })
-                }
-                _ => {}
-            }
         }
     }
 }

@@ -167,6 +167,10 @@ impl World {
         self.truth.trace.drain(..)
     }
 
+    pub fn slipping(&self) -> bool {
+        self.truth.slipping(&self.touch, self.floor_mm_s)
+    }
+
     pub const fn touch(&self) -> &Touch {
         &self.touch
     }
@@ -214,7 +218,6 @@ impl World {
         pins_v[ARRAY..MYO_FLEXOR].copy_from_slice(&self.elements.step(&self.touch, shakes));
         pins_v[MYO_FLEXOR..OPENING].copy_from_slice(&self.envelopes.step(t_s, effort));
         pins_v[OPENING..COUNT].copy_from_slice(&hand_v(&self.gripper));
-        self.truth.wearer(t_s, effort.intent, pins_v);
     }
 
     fn handle(&mut self, at_s: f64, act: Act) {
@@ -374,10 +377,6 @@ impl Plant for World {
         let touched = self.touch.normal_n > TOUCH_N;
         let spring = grasp.between_the_fingers().filter(|_| touched)?;
         self.gripper.closing_to(target_n, self.touch.normal_n, spring)
-    }
-
-    fn slipping(&self) -> bool {
-        self.truth.slipping(&self.touch, self.floor_mm_s)
     }
 
     fn duration_s(&self) -> f64 {
