@@ -6,12 +6,8 @@ use std::fmt::Write as _;
 
 use sha2::{Digest, Sha256};
 
-/// A type whose .msg text is known: `sensor_msgs/msg/JointState`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Definition<'a> {
-    pub name: &'a str,
-    pub text: &'a str,
-}
+/// A type's name, `sensor_msgs/msg/JointState`, and its .msg text.
+pub type Definition<'a> = (&'a str, &'a str);
 
 /// The hash of a type, given it and all that it is made of. None where a type is missing or a line is no field.
 pub fn hash(name: &str, known: &[Definition]) -> Option<String> {
@@ -33,8 +29,8 @@ fn describe(name: &str, known: &[Definition], described: &mut BTreeMap<String, S
     if described.contains_key(name) {
         return Some(());
     }
-    let text = match known.iter().find(|definition| definition.name == name) {
-        Some(definition) => definition.text.to_owned(),
+    let text = match known.iter().find(|(own, _)| *own == name) {
+        Some((_, text)) => (*text).to_owned(),
         None => derived(name)?,
     };
     // Its place, for a type that would hold itself.

@@ -6,63 +6,67 @@ use serde::{Deserialize, Serialize};
 use crate::describe::{Definition, hash};
 
 pub const DEFINITIONS: [Definition<'static>; 24] = [
-    Definition { name: "builtin_interfaces/msg/Time", text: "int32 sec\nuint32 nanosec" },
-    Definition { name: "std_msgs/msg/Header", text: "builtin_interfaces/Time stamp\nstring frame_id" },
-    Definition {
-        name: JointState::NAME,
-        text: "std_msgs/Header header\nstring[] name\nfloat64[] position\nfloat64[] velocity\nfloat64[] effort",
-    },
-    Definition { name: GripperCommand::NAME, text: "float64 position\nfloat64 max_effort" },
-    Definition { name: "diagnostic_msgs/msg/KeyValue", text: "string key\nstring value" },
-    Definition {
-        name: "diagnostic_msgs/msg/DiagnosticStatus",
-        text: "byte level\nstring name\nstring message\nstring hardware_id\nKeyValue[] values",
-    },
-    Definition { name: Word::NAME, text: "string data" },
-    Definition { name: DiagnosticArray::NAME, text: "std_msgs/Header header\nDiagnosticStatus[] status" },
-    Definition { name: Tactile::NAME, text: include_str!("../tenax_msgs/msg/Tactile.msg") },
-    Definition { name: Slip::NAME, text: include_str!("../tenax_msgs/msg/Slip.msg") },
-    Definition { name: Margin::NAME, text: include_str!("../tenax_msgs/msg/Margin.msg") },
-    Definition { name: "unique_identifier_msgs/msg/UUID", text: "uint8[16] uuid" },
-    Definition {
-        name: "service_msgs/msg/ServiceEventInfo",
-        text: "uint8 event_type\nbuiltin_interfaces/Time stamp\nuint8[16] client_gid\nint64 sequence_number",
-    },
-    Definition {
-        name: "action_msgs/msg/GoalInfo",
-        text: "unique_identifier_msgs/UUID goal_id\nbuiltin_interfaces/Time stamp",
-    },
-    Definition { name: "action_msgs/msg/GoalStatus", text: "GoalInfo goal_info\nint8 status" },
-    Definition { name: GoalStatusArray::NAME, text: "GoalStatus[] status_list" },
-    Definition { name: "action_msgs/srv/CancelGoal_Request", text: "action_msgs/GoalInfo goal_info" },
-    Definition {
-        name: "action_msgs/srv/CancelGoal_Response",
-        text: "int8 return_code\naction_msgs/GoalInfo[] goals_canceling",
-    },
-    Definition {
-        name: "control_msgs/action/GripperCommand_Goal",
-        text: "control_msgs/GripperCommand command",
-    },
-    Definition { name: "control_msgs/action/GripperCommand_Result", text: GRIPPER },
-    Definition { name: "control_msgs/action/GripperCommand_Feedback", text: GRIPPER },
-    Definition {
-        name: "control_msgs/action/ParallelGripperCommand_Goal",
-        text: "sensor_msgs/JointState command",
-    },
-    Definition {
-        name: "control_msgs/action/ParallelGripperCommand_Result",
-        text: "sensor_msgs/JointState state\nbool stalled\nbool reached_goal",
-    },
-    Definition {
-        name: "control_msgs/action/ParallelGripperCommand_Feedback",
-        text: "sensor_msgs/JointState state",
-    },
+    ("builtin_interfaces/msg/Time", "int32 sec\nuint32 nanosec"),
+    ("std_msgs/msg/Header", "builtin_interfaces/Time stamp\nstring frame_id"),
+    (
+        JointState::NAME,
+        "std_msgs/Header header\nstring[] name\nfloat64[] position\nfloat64[] velocity\nfloat64[] effort",
+    ),
+    (GripperCommand::NAME, "float64 position\nfloat64 max_effort"),
+    ("diagnostic_msgs/msg/KeyValue", "string key\nstring value"),
+    (
+        "diagnostic_msgs/msg/DiagnosticStatus",
+        "byte level\nstring name\nstring message\nstring hardware_id\nKeyValue[] values",
+    ),
+    (Word::NAME, "string data"),
+    (DiagnosticArray::NAME, "std_msgs/Header header\nDiagnosticStatus[] status"),
+    (Tactile::NAME, include_str!("../tenax_msgs/msg/Tactile.msg")),
+    (Slip::NAME, include_str!("../tenax_msgs/msg/Slip.msg")),
+    (Margin::NAME, include_str!("../tenax_msgs/msg/Margin.msg")),
+    ("unique_identifier_msgs/msg/UUID", "uint8[16] uuid"),
+    (
+        "service_msgs/msg/ServiceEventInfo",
+        "uint8 event_type\nbuiltin_interfaces/Time stamp\nuint8[16] client_gid\nint64 sequence_number",
+    ),
+    ("action_msgs/msg/GoalInfo", "unique_identifier_msgs/UUID goal_id\nbuiltin_interfaces/Time stamp"),
+    ("action_msgs/msg/GoalStatus", "GoalInfo goal_info\nint8 status"),
+    (GoalStatusArray::NAME, "GoalStatus[] status_list"),
+    ("action_msgs/srv/CancelGoal_Request", "action_msgs/GoalInfo goal_info"),
+    ("action_msgs/srv/CancelGoal_Response", "int8 return_code\naction_msgs/GoalInfo[] goals_canceling"),
+    ("control_msgs/action/GripperCommand_Goal", "control_msgs/GripperCommand command"),
+    ("control_msgs/action/GripperCommand_Result", GRIPPER),
+    ("control_msgs/action/GripperCommand_Feedback", GRIPPER),
+    ("control_msgs/action/ParallelGripperCommand_Goal", "sensor_msgs/JointState command"),
+    (
+        "control_msgs/action/ParallelGripperCommand_Result",
+        "sensor_msgs/JointState state\nbool stalled\nbool reached_goal",
+    ),
+    ("control_msgs/action/ParallelGripperCommand_Feedback", "sensor_msgs/JointState state"),
 ];
 
 const GRIPPER: &str = "float64 position\nfloat64 effort\nbool stalled\nbool reached_goal";
 
 pub trait Message: Serialize + DeserializeOwned {
     const NAME: &'static str;
+}
+
+macro_rules! messages {
+    ($($message:ident = $name:literal;)*) => {$(
+        impl Message for $message {
+            const NAME: &'static str = $name;
+        }
+    )*};
+}
+
+messages! {
+    JointState = "sensor_msgs/msg/JointState";
+    GripperCommand = "control_msgs/msg/GripperCommand";
+    Word = "std_msgs/msg/String";
+    DiagnosticArray = "diagnostic_msgs/msg/DiagnosticArray";
+    Tactile = "tenax_msgs/msg/Tactile";
+    Slip = "tenax_msgs/msg/Slip";
+    Margin = "tenax_msgs/msg/Margin";
+    GoalStatusArray = "action_msgs/msg/GoalStatusArray";
 }
 
 /// The hash of a message, a service (`action_msgs/srv/CancelGoal`) or a part of an action (`control_msgs/action/GripperCommand_SendGoal`).
@@ -108,10 +112,6 @@ pub struct JointState {
     pub effort: Vec<f64>,
 }
 
-impl Message for JointState {
-    const NAME: &'static str = "sensor_msgs/msg/JointState";
-}
-
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct GripperCommand {
     /// Gap, m: 0 closes, more opens.
@@ -120,17 +120,9 @@ pub struct GripperCommand {
     pub max_effort: f64,
 }
 
-impl Message for GripperCommand {
-    const NAME: &'static str = "control_msgs/msg/GripperCommand";
-}
-
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Word {
     pub data: String,
-}
-
-impl Message for Word {
-    const NAME: &'static str = "std_msgs/msg/String";
 }
 
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -155,10 +147,6 @@ pub struct DiagnosticArray {
     pub status: Vec<DiagnosticStatus>,
 }
 
-impl Message for DiagnosticArray {
-    const NAME: &'static str = "diagnostic_msgs/msg/DiagnosticArray";
-}
-
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Tactile {
     pub header: Header,
@@ -168,10 +156,6 @@ pub struct Tactile {
     pub shear_y: f64,
     pub samples: Vec<u16>,
     pub films: Vec<u16>,
-}
-
-impl Message for Tactile {
-    const NAME: &'static str = "tenax_msgs/msg/Tactile";
 }
 
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -188,10 +172,6 @@ pub struct Slip {
     pub line_may_command: bool,
 }
 
-impl Message for Slip {
-    const NAME: &'static str = "tenax_msgs/msg/Slip";
-}
-
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Margin {
     pub header: Header,
@@ -200,10 +180,6 @@ pub struct Margin {
     pub ratio: f64,
     pub limit: f64,
     pub shear_angle: f64,
-}
-
-impl Message for Margin {
-    const NAME: &'static str = "tenax_msgs/msg/Margin";
 }
 
 pub type GoalId = [u8; 16];
@@ -249,10 +225,6 @@ pub struct CancelResponse {
 pub struct GoalStatusArray {
     /// The status of each: 2 executing, 4 succeeded, 5 cancelled, 6 aborted.
     pub status_list: Vec<(GoalInfo, i8)>,
-}
-
-impl Message for GoalStatusArray {
-    const NAME: &'static str = "action_msgs/msg/GoalStatusArray";
 }
 
 /// Result and feedback of the action `GripperCommand`.
