@@ -4,6 +4,8 @@
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
+use crate::named;
+
 /// A behaviour. It lasts until it ends by itself, by [`Down::End`](crate::wire::Down::End), or because a muscle becomes active.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum Behaviour {
@@ -34,34 +36,20 @@ impl Behaviour {
     }
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
-pub enum Ending {
-    Done,
-    Stopped,
-    TakenOver,
-    /// A needed sensor gives no valid reading, or no pictures come.
-    SensorLost,
-    TooLong,
-    Ceiling,
-    Dropped,
-    /// The grasp was loosened as far as allowed and nothing slipped; it is as firm as before.
-    NoSlip,
-    NotArmed,
-}
-
-impl Ending {
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Done => "done",
-            Self::Stopped => "stopped by command",
-            Self::TakenOver => "taken over",
-            Self::SensorLost => "gave up: a sensor that it needs is lost",
-            Self::TooLong => "gave up: it took too long",
-            Self::Ceiling => "gave up: the force ceiling is reached",
-            Self::Dropped => "gave up: nothing is held any more",
-            Self::NoSlip => "gave up: nothing slipped",
-            Self::NotArmed => "gave up: the consent is over",
-        }
+named! {
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
+    pub enum Ending {
+        Done = "done",
+        Stopped = "stopped by command",
+        TakenOver = "taken over",
+        /// A needed sensor gives no valid reading, or no pictures come.
+        SensorLost = "gave up: a sensor that it needs is lost",
+        TooLong = "gave up: it took too long",
+        Ceiling = "gave up: the force ceiling is reached",
+        Dropped = "gave up: nothing is held any more",
+        /// The grasp was loosened as far as allowed and nothing slipped; it is as firm as before.
+        NoSlip = "gave up: nothing slipped",
+        NotArmed = "gave up: the consent is over",
     }
 }
 

@@ -4,48 +4,40 @@
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
-/// A detector. Its number is its bit in a [`DetectorSet`]; new ones are added at the end.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[repr(u8)]
-pub enum DetectorId {
-    /// S1: vibration of the PVDF film (Prosthesis, section 5).
-    S1,
-    /// S2: Ft/Fn, which warns of slip before it happens (Prosthesis, section 5).
-    S2,
-    /// The Hebbian network that a camera teaches (Tada 2006).
-    Hebbian,
-    /// The multilayer perceptron on normal forces (Bamshad 2023).
-    Mlp,
-    /// Reports from outside: of a scene that knows whether it slips.
-    Injected,
-    /// The flicker of a photoelastic head (Dubey 2006).
-    Photoelastic,
+use crate::named;
+
+named! {
+    /// A detector. Its number is its bit in a [`DetectorSet`]; new ones are added at the end.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
+    #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+    #[repr(u8)]
+    pub enum DetectorId {
+        /// S1: vibration of the PVDF film (Prosthesis, section 5).
+        S1 = "s1",
+        /// S2: Ft/Fn, which warns of slip before it happens (Prosthesis, section 5).
+        S2 = "s2",
+        /// The Hebbian network that a camera teaches (Tada 2006).
+        Hebbian = "hebbian",
+        /// The multilayer perceptron on normal forces (Bamshad 2023).
+        Mlp = "mlp",
+        /// Reports from outside: of a scene that knows whether it slips.
+        Injected = "injected",
+        /// The flicker of a photoelastic head (Dubey 2006).
+        Photoelastic = "photoelastic",
+    }
 }
 
 impl DetectorId {
-    pub const ALL: [Self; 6] =
-        [Self::S1, Self::S2, Self::Hebbian, Self::Mlp, Self::Injected, Self::Photoelastic];
     pub const COUNT: usize = Self::ALL.len();
 
-    /// Name and title.
-    const fn names(self) -> (&'static str, &'static str) {
-        match self {
-            Self::S1 => ("s1", "S1 vibration"),
-            Self::S2 => ("s2", "S2 Ft/Fn"),
-            Self::Hebbian => ("hebbian", "Hebbian"),
-            Self::Mlp => ("mlp", "MLP"),
-            Self::Injected => ("injected", "injected"),
-            Self::Photoelastic => ("photoelastic", "photoelastic"),
-        }
-    }
-
-    pub const fn name(self) -> &'static str {
-        self.names().0
-    }
-
     pub const fn title(self) -> &'static str {
-        self.names().1
+        match self {
+            Self::S1 => "S1 vibration",
+            Self::S2 => "S2 Ft/Fn",
+            Self::Hebbian => "Hebbian",
+            Self::Mlp => "MLP",
+            Self::Injected | Self::Photoelastic => self.name(),
+        }
     }
 }
 

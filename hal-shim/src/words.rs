@@ -9,33 +9,39 @@ use serde::{Deserialize, Serialize};
 
 use crate::detector::DetectorId;
 
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum GripMode {
-    /// A sensor that the reflex needs is missing (at boot: not yet seen). The reflex commands nothing; the wearer still drives the hand.
-    #[default]
-    Standby,
-    /// A myosensor is active, a drive command holds, or a behaviour answers slip itself: the reflex commands nothing.
-    Wearer,
-    /// No other source drives the hand: the detectors are watched.
-    Watch,
-    Slip,
-    /// A detector warns, such as S2: the hand closes a little.
-    Incipient,
-    /// After closing: the object settles in the grasp, and reports are not answered.
-    Settle,
+/// An enum whose variants have a name for people and programs.
+#[macro_export]
+macro_rules! named {
+    ($(#[$own:meta])* pub enum $enum:ident { $($(#[$of:meta])* $variant:ident = $name:literal,)* }) => {
+        $(#[$own])*
+        pub enum $enum { $($(#[$of])* $variant,)* }
+
+        impl $enum {
+            pub const ALL: [Self; [$($enum::$variant,)*].len()] = [$(Self::$variant,)*];
+
+            pub const fn name(self) -> &'static str {
+                match self { $(Self::$variant => $name,)* }
+            }
+        }
+    };
 }
 
-impl GripMode {
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Standby => "standby",
-            Self::Wearer => "wearer",
-            Self::Watch => "watch",
-            Self::Slip => "slip",
-            Self::Incipient => "incipient slip",
-            Self::Settle => "settle",
-        }
+named! {
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
+    #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+    pub enum GripMode {
+        /// A sensor that the reflex needs is missing (at boot: not yet seen). The reflex commands nothing; the wearer still drives the hand.
+        #[default]
+        Standby = "standby",
+        /// A myosensor is active, a drive command holds, or a behaviour answers slip itself: the reflex commands nothing.
+        Wearer = "wearer",
+        /// No other source drives the hand: the detectors are watched.
+        Watch = "watch",
+        Slip = "slip",
+        /// A detector warns, such as S2: the hand closes a little.
+        Incipient = "incipient slip",
+        /// After closing: the object settles in the grasp, and reports are not answered.
+        Settle = "settle",
     }
 }
 
@@ -108,14 +114,16 @@ pub enum Capability {
     WearerIntent,
 }
 
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
-pub enum DriveSource {
-    #[default]
-    Nobody,
-    Wearer,
-    Link,
-    Reflex,
-    Behaviour,
+named! {
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
+    pub enum DriveSource {
+        #[default]
+        Nobody = "nobody",
+        Wearer = "wearer",
+        Link = "link",
+        Reflex = "reflex",
+        Behaviour = "behaviour",
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
@@ -160,27 +168,18 @@ pub enum Fault {
     BrownOutLevel,
 }
 
-/// Reason for which the motor is not driven although a source asks for it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum MotorStop {
-    ClosingStalled,
-    /// At its stop, or the gear is jammed. A new opening command is tried again.
-    OpeningStalled,
-    /// Too much current for too long: closing is stopped until the motor has cooled. Opening is allowed.
-    Hot,
-    /// The motor bridge reports that it has switched itself off: a short, heat, or a low supply of its own.
-    BridgeOff,
-}
-
-impl MotorStop {
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::ClosingStalled => "it stalled as it closed",
-            Self::OpeningStalled => "it stalled as it opened",
-            Self::Hot => "it is hot; it does not close",
-            Self::BridgeOff => "its bridge reports a fault",
-        }
+named! {
+    /// Reason for which the motor is not driven although a source asks for it.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
+    #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+    pub enum MotorStop {
+        ClosingStalled = "it stalled as it closed",
+        /// At its stop, or the gear is jammed. A new opening command is tried again.
+        OpeningStalled = "it stalled as it opened",
+        /// Too much current for too long: closing is stopped until the motor has cooled. Opening is allowed.
+        Hot = "it is hot; it does not close",
+        /// The motor bridge reports that it has switched itself off: a short, heat, or a low supply of its own.
+        BridgeOff = "its bridge reports a fault",
     }
 }
 
@@ -264,55 +263,31 @@ impl Kept {
     pub const ALL: [Self; 4] = [Self::Network, Self::Zero, Self::Settings, Self::Emg];
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
-pub enum Prompt {
-    Rest,
-    Close,
-    Open,
-}
-
-impl Prompt {
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Rest => "let the arm lie and relax",
-            Self::Close => "hold the contraction that shall close the hand",
-            Self::Open => "hold the contraction that shall open the hand",
-        }
+named! {
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
+    pub enum Prompt {
+        Rest = "let the arm lie and relax",
+        Close = "hold the contraction that shall close the hand",
+        Open = "hold the contraction that shall open the hand",
     }
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
-pub enum CalibrationRefusal {
-    /// An envelope wandered while the wearer should rest: a contraction, a loose electrode, interference.
-    RestNotQuiet,
-    NoClosing,
-    NoOpening,
-    SameDirection,
-    Overlap,
-    NotAMuscle,
-    Saturated,
-    SensorLost,
-    Damaged,
-    /// The hand came to hold something, or its force sensor gave no number: the muscles must be able to open it.
-    Loaded,
-    Stopped,
-}
-
-impl CalibrationRefusal {
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Loaded => "something was held, or may have been",
-            Self::Stopped => "the button stopped it",
-            Self::RestNotQuiet => "rest was not quiet",
-            Self::NoClosing => "closing did not stand out from rest",
-            Self::NoOpening => "opening did not stand out from rest",
-            Self::SameDirection => "both contractions drive the electrodes alike",
-            Self::Overlap => "the contractions fluctuate more than they differ",
-            Self::NotAMuscle => "an envelope stood still during a contraction",
-            Self::Saturated => "an envelope was at the top of its range",
-            Self::SensorLost => "a myosensor gave no number",
-            Self::Damaged => "what was kept is not a calibration",
-        }
+named! {
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
+    pub enum CalibrationRefusal {
+        /// An envelope wandered while the wearer should rest: a contraction, a loose electrode, interference.
+        RestNotQuiet = "rest was not quiet",
+        NoClosing = "closing did not stand out from rest",
+        NoOpening = "opening did not stand out from rest",
+        SameDirection = "both contractions drive the electrodes alike",
+        Overlap = "the contractions fluctuate more than they differ",
+        NotAMuscle = "an envelope stood still during a contraction",
+        Saturated = "an envelope was at the top of its range",
+        SensorLost = "a myosensor gave no number",
+        Damaged = "what was kept is not a calibration",
+        /// The hand came to hold something, or its force sensor gave no number: the muscles must be able to open it.
+        Loaded = "something was held, or may have been",
+        Stopped = "the button stopped it",
     }
 }
 
@@ -322,22 +297,14 @@ impl fmt::Display for CalibrationRefusal {
     }
 }
 
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
-pub enum Fit {
-    #[default]
-    Fits,
-    /// The electrodes have moved, or the wearer contracts differently: a new calibration is needed.
-    Moved,
-    Exchanged,
-}
-
-impl Fit {
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Fits => "it fits what the electrodes do",
-            Self::Moved => "it does not fit what the electrodes do; calibrate anew",
-            Self::Exchanged => "the electrodes look exchanged; exchange their plugs, or calibrate anew",
-        }
+named! {
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
+    pub enum Fit {
+        #[default]
+        Fits = "it fits what the electrodes do",
+        /// The electrodes have moved, or the wearer contracts differently: a new calibration is needed.
+        Moved = "it does not fit what the electrodes do; calibrate anew",
+        Exchanged = "the electrodes look exchanged; exchange their plugs, or calibrate anew",
     }
 }
 

@@ -70,14 +70,7 @@ impl TickRecord {
             2 if permille == duty.as_per_mille() => MotorDrive::Open(duty),
             _ => return None,
         };
-        let source = match driven >> SOURCE_SHIFT {
-            0 => DriveSource::Nobody,
-            1 => DriveSource::Wearer,
-            2 => DriveSource::Link,
-            3 => DriveSource::Reflex,
-            4 => DriveSource::Behaviour,
-            _ => return None,
-        };
+        let source = *DriveSource::ALL.get(usize::from(driven >> SOURCE_SHIFT))?;
         let [said, believed, acted] = sets;
         Some(Self {
             vibration,
@@ -148,7 +141,6 @@ impl<'de> Deserialize<'de> for TickRecord {
 mod tests {
     use super::*;
     use crate::detector::DetectorId;
-    use crate::words::DriveSource::{Behaviour, Link, Nobody, Reflex, Wearer};
 
     #[test]
     fn every_field_survives_its_bytes_at_its_ends() {
@@ -163,7 +155,7 @@ mod tests {
         let duties = [0, 1, 999, 1_000].map(Duty::per_mille);
         let driven = duties.into_iter().flat_map(|duty| [MotorDrive::Close(duty), MotorDrive::Open(duty)]);
         for drive in driven.chain([MotorDrive::Coast]) {
-            for source in [Nobody, Wearer, Link, Reflex, Behaviour] {
+            for source in DriveSource::ALL {
                 for (vibration, outputs, [said, believed, acted]) in ends {
                     let record = TickRecord { vibration, outputs, said, believed, acted, drive, source };
                     let mut buffer = [0; BYTES_MAX];

@@ -2,25 +2,18 @@
 
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 use serde::Serialize;
+use tenax_hal_shim::named;
 
 use super::material::{Ends, HELD_OUT, Material, SEEN};
 
-/// Part of a data set that a session belongs to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Part {
-    Train,
-    Validation,
-    Test,
-}
-
-impl Part {
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Train => "train",
-            Self::Validation => "validation",
-            Self::Test => "test",
-        }
+named! {
+    /// Part of a data set that a session belongs to.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+    #[serde(rename_all = "snake_case")]
+    pub enum Part {
+        Train = "train",
+        Validation = "validation",
+        Test = "test",
     }
 }
 

@@ -4,19 +4,22 @@ use std::ops::Range;
 
 use anyhow::Context;
 use rand::{RngExt, rngs::ChaCha8Rng};
+use tenax_hal_shim::named;
 use tenax_scene::{SceneFile, builtin};
 use toml::{Table, Value};
 
 use super::session::Session;
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Story {
-    /// Bamshad 2023, section 3.2: balls are poured in until it slips, again and again.
-    Pour,
-    /// The first task of section 6: picked up, and placed back.
-    Pick,
-    /// Knocks, arm swing, tremor, the motor, a bad supply: nothing slips.
-    Disturb,
+named! {
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum Story {
+        /// Bamshad 2023, section 3.2: balls are poured in until it slips, again and again.
+        Pour = "pour",
+        /// The first task of section 6: picked up, and placed back.
+        Pick = "pick",
+        /// Knocks, arm swing, tremor, the motor, a bad supply: nothing slips.
+        Disturb = "disturb",
+    }
 }
 
 /// Durations, s; in the last 3 s of the disturbances the grip changes.
@@ -27,16 +30,6 @@ const DISTURB_S: f64 = 13.0;
 const NOISIER: Range<f64> = 1.0..5.0;
 
 impl Story {
-    pub const ALL: [Self; 3] = [Self::Pour, Self::Pick, Self::Disturb];
-
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Pour => "pour",
-            Self::Pick => "pick",
-            Self::Disturb => "disturb",
-        }
-    }
-
     /// The scene of this story in this session, edited. Fails if a number is none that a scene may have.
     pub fn scene_in(
         self,

@@ -7,30 +7,8 @@ use tenax_hal_shim::channel::{REFERENCE_MV, SAMPLE_MAX};
 use tenax_hal_shim::detector::{DetectorHealth, DetectorId, Evidence};
 use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::wire::{Slow, TickRecord};
-use tenax_hal_shim::words::{DriveSource, GripMode};
+use tenax_hal_shim::words::GripMode;
 use tenax_sim::board::Recorder;
-
-pub const DETECTORS: [&str; DetectorId::COUNT] = {
-    let mut names = [""; DetectorId::COUNT];
-    let mut n = 0;
-    while n < names.len() {
-        names[n] = DetectorId::ALL[n].name();
-        n += 1;
-    }
-    names
-};
-pub const MODES: [&str; 6] = [
-    GripMode::Standby.name(),
-    GripMode::Wearer.name(),
-    GripMode::Watch.name(),
-    GripMode::Slip.name(),
-    GripMode::Incipient.name(),
-    GripMode::Settle.name(),
-];
-/// As `tenax.wire` names them.
-pub const SOURCES: [&str; 5] = ["nobody", "wearer", "link", "reflex", "behaviour"];
-const _: () = assert!(GripMode::Settle as usize + 1 == MODES.len());
-const _: () = assert!(DriveSource::Behaviour as usize + 1 == SOURCES.len());
 
 /// Millivolts a 14-bit sample, as `tenax.MV`: the converter's reference over 16 384 steps.
 pub const MV: f64 = REFERENCE_MV as f64 / (SAMPLE_MAX as f64 + 4.0);

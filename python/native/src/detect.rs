@@ -75,24 +75,13 @@ fn samples<const N: usize>(columns: &[Vec<f64>], first: usize, row: usize) -> [u
     })
 }
 
+#[derive(Default)]
 struct Sensors {
     vibration: Vibration,
     envelopes: [i32; PVDF_COUNT],
     strain: Gauges,
     taxels: Reading,
     head: Head,
-}
-
-impl Default for Sensors {
-    fn default() -> Self {
-        Self {
-            vibration: Vibration::default(),
-            envelopes: [0; PVDF_COUNT],
-            strain: Gauges::default(),
-            taxels: [None; ARRAY_COUNT],
-            head: Head::default(),
-        }
-    }
 }
 
 impl Sensors {
@@ -158,7 +147,8 @@ pub fn s1<'py>(
     rate_hz: f64,
     settings: Settings,
 ) -> Table<'py> {
-    let (config, films) = (config_of(&settings).map_err(refused)?, columns(&volts, PVDF_COUNT, rate_hz, FRAME_HZ)?);
+    let (config, films) =
+        (config_of(&settings).map_err(refused)?, columns(&volts, PVDF_COUNT, rate_hz, FRAME_HZ)?);
     let mut detector = VibrationDetector::default();
     table(py, 0..films[0].len(), |frame| {
         let vibration = detector.process(&config.vibration, &samples(&films, PVDF, frame), None);

@@ -11,6 +11,8 @@ use std::path::Path;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use tenax_hal_shim::channel::CHANNELS;
+use tenax_hal_shim::detector::DetectorId;
+use tenax_hal_shim::words::{DriveSource, GripMode};
 use tenax_logic::setting::SettingId;
 use tenax_scene::drawn::Family;
 use tenax_sim::live::Use;
@@ -56,8 +58,7 @@ fn run(py: Python<'_>, scene: &str, seed: u64, bound: bool) -> PyResult<(String,
     let done = py.detach(|| {
         let (file, mut kept) = (session::load_scene(scene)?, Kept::default());
         let line = Use { without_bound: !bound, ..Use::default() };
-        let outcome =
-            session::scene_served(&file, seed, &Board::Host, line, &mut kept, &mut |_| {})?;
+        let outcome = session::scene_served(&file, seed, &Board::Host, line, &mut kept, &mut |_| {})?;
         Ok((serde_json::to_string(&outcome.report)?, kept.line))
     });
     done.map_err(|error: anyhow::Error| refused(error))
@@ -81,9 +82,9 @@ fn replay(py: Python<'_>, path: &str, recipe: Option<&str>, seed: u64) -> PyResu
 fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("CHANNELS", CHANNELS.map(|channel| channel.name))?;
     module.add("REST_V", CHANNELS.map(|channel| f64::from(channel.rest_mv) / 1e3))?;
-    module.add("DETECTORS", columns::DETECTORS)?;
-    module.add("MODES", columns::MODES)?;
-    module.add("SOURCES", columns::SOURCES)?;
+    module.add("DETECTORS", DetectorId::ALL.map(DetectorId::name))?;
+    module.add("MODES", GripMode::ALL.map(GripMode::name))?;
+    module.add("SOURCES", DriveSource::ALL.map(DriveSource::name))?;
     module.add("FAMILIES", Family::ALL.map(Family::name))?;
     module.add("OBSERVED", world::observed())?;
     module.add_class::<fingertip::Fingertip>()?;

@@ -80,7 +80,7 @@ pub fn observed() -> Vec<(String, f64, f64)> {
     all.extend([("o1".to_owned(), -1.0, 1.0), ("o2".to_owned(), -1.0, 1.0)]);
     all.extend([("opening_v".to_owned(), 0.0, 3.3), ("motor_current_v".to_owned(), 0.0, 3.3)]);
     all.push(("drive".to_owned(), -1.0, 1.0));
-    all.extend(columns::DETECTORS.iter().map(|name| flag(format!("{name}_says"))));
+    all.extend(DetectorId::ALL.map(|id| flag(format!("{}_says", id.name()))));
     all
 }
 

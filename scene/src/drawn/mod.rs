@@ -9,54 +9,25 @@ use std::fmt::Write;
 use std::str::FromStr;
 
 use ranges::Law;
+use tenax_hal_shim::named;
 
 use crate::file::{SceneError, SceneFile};
 use crate::physics::GRAVITY_M_S2;
 use crate::random::{Noise, Source};
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Family {
-    QuietHold,
-    DisturbedHold,
-    Splash,
-    Condensation,
-    Pour,
-    DropInAndTug,
-    WalkAndSwing,
-    FragileAndSlippery,
-    OffCentre,
-    WearersWill,
-}
-
-impl Family {
-    pub const ALL: [Self; 10] = [
-        Self::QuietHold,
-        Self::DisturbedHold,
-        Self::Splash,
-        Self::Condensation,
-        Self::Pour,
-        Self::DropInAndTug,
-        Self::WalkAndSwing,
-        Self::FragileAndSlippery,
-        Self::OffCentre,
-        Self::WearersWill,
-    ];
-
-    const NAMES: [&str; 10] = [
-        "quiet-hold",
-        "disturbed-hold",
-        "splash",
-        "condensation",
-        "pour",
-        "drop-in-and-tug",
-        "walk-and-swing",
-        "fragile-and-slippery",
-        "off-centre",
-        "wearers-will",
-    ];
-
-    pub const fn name(self) -> &'static str {
-        Self::NAMES[self as usize]
+named! {
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum Family {
+        QuietHold = "quiet-hold",
+        DisturbedHold = "disturbed-hold",
+        Splash = "splash",
+        Condensation = "condensation",
+        Pour = "pour",
+        DropInAndTug = "drop-in-and-tug",
+        WalkAndSwing = "walk-and-swing",
+        FragileAndSlippery = "fragile-and-slippery",
+        OffCentre = "off-centre",
+        WearersWill = "wearers-will",
     }
 }
 
@@ -65,7 +36,7 @@ impl FromStr for Family {
 
     fn from_str(name: &str) -> Result<Self, String> {
         let found = Self::ALL.into_iter().find(|family| family.name() == name);
-        found.ok_or_else(|| format!("no family; there are {}", Self::NAMES.join(", ")))
+        found.ok_or_else(|| format!("no family; there are {}", Self::ALL.map(Self::name).join(", ")))
     }
 }
 
