@@ -24,13 +24,7 @@ struct Bench {
 }
 
 impl Plant for Bench {
-    fn within(&self) -> Option<&dyn Plant> {
-        Some(&self.world)
-    }
-
-    fn within_mut(&mut self) -> Option<&mut dyn Plant> {
-        Some(&mut self.world)
-    }
+    tenax_scene::put_around!(world);
 
     fn scan(&mut self, drive: MotorDrive) -> &Pins {
         self.scans += 1;

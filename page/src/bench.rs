@@ -48,13 +48,7 @@ struct Manned {
 }
 
 impl Plant for Manned {
-    fn within(&self) -> Option<&dyn Plant> {
-        Some(&self.set)
-    }
-
-    fn within_mut(&mut self) -> Option<&mut dyn Plant> {
-        Some(&mut self.set)
-    }
+    tenax_scene::put_around!(set);
 
     fn scan(&mut self, drive: MotorDrive) -> &Pins {
         self.pressed = self.pressed.saturating_sub(1);

@@ -34,6 +34,20 @@ pub enum Calibrated {
     Words([i32; 10]),
 }
 
+/// Names the field of a plant that is the one within it.
+#[macro_export]
+macro_rules! put_around {
+    ($within:ident) => {
+        fn within(&self) -> Option<&dyn $crate::plant::Plant> {
+            Some(&self.$within)
+        }
+
+        fn within_mut(&mut self) -> Option<&mut dyn $crate::plant::Plant> {
+            Some(&mut self.$within)
+        }
+    };
+}
+
 /// A world (a scene) or a recording, seen from the board, one scan at a time.
 /// One that is put around another names it as `within`, and says itself only what is different.
 pub trait Plant: Send {

@@ -134,13 +134,7 @@ pub struct Served<P> {
 }
 
 impl<P: Plant> Plant for Served<P> {
-    fn within(&self) -> Option<&dyn Plant> {
-        Some(&self.plant)
-    }
-
-    fn within_mut(&mut self) -> Option<&mut dyn Plant> {
-        Some(&mut self.plant)
-    }
+    tenax_scene::put_around!(plant);
 
     fn scan(&mut self, drive: MotorDrive) -> &Pins {
         if let Some(live) = &mut self.line.live {

@@ -57,13 +57,7 @@ impl<P: Plant> Set<P> {
 }
 
 impl<P: Plant> Plant for Set<P> {
-    fn within(&self) -> Option<&dyn Plant> {
-        Some(&self.plant)
-    }
-
-    fn within_mut(&mut self) -> Option<&mut dyn Plant> {
-        Some(&mut self.plant)
-    }
+    tenax_scene::put_around!(plant);
 
     fn scan(&mut self, drive: MotorDrive) -> &Pins {
         self.plant.scan(drive)

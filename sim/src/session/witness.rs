@@ -91,13 +91,7 @@ fn truth_of(world: &World, row: &Row) -> Truth {
 }
 
 impl Plant for Drawn {
-    fn within(&self) -> Option<&dyn Plant> {
-        Some(&self.world)
-    }
-
-    fn within_mut(&mut self) -> Option<&mut dyn Plant> {
-        Some(&mut self.world)
-    }
+    tenax_scene::put_around!(world);
 
     fn scan(&mut self, drive: MotorDrive) -> &Pins {
         self.draw();

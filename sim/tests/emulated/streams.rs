@@ -21,13 +21,7 @@ struct Asked<P> {
 }
 
 impl<P: Plant> Plant for Asked<P> {
-    fn within(&self) -> Option<&dyn Plant> {
-        Some(&self.plant)
-    }
-
-    fn within_mut(&mut self) -> Option<&mut dyn Plant> {
-        Some(&mut self.plant)
-    }
+    tenax_scene::put_around!(plant);
 
     fn scan(&mut self, drive: MotorDrive) -> &Pins {
         self.scans += 1;
