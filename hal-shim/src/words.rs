@@ -250,17 +250,15 @@ pub enum Line {
     Trusted,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum Kept {
-    Network,
-    Zero,
-    Settings,
-    Emg,
-}
-
-impl Kept {
-    pub const ALL: [Self; 4] = [Self::Network, Self::Zero, Self::Settings, Self::Emg];
+named! {
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
+    #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+    pub enum Kept {
+        Network = "the network's weights",
+        Zero = "the force sensor's zeros",
+        Settings = "the settings",
+        Emg = "the wearer's calibration",
+    }
 }
 
 named! {

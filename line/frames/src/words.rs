@@ -7,7 +7,7 @@ use tenax_hal_shim::wire::{
     About, Answer, BadFrame, Down, EventKind, NetworkState, Refusal, Restored, SCHEMA, Setting, Slow,
     TickRecord, Up, VERSION,
 };
-use tenax_hal_shim::words::{Calibration, Fault, Kept, Line};
+use tenax_hal_shim::words::{Calibration, Fault, Line};
 use tenax_logic::setting::SettingId;
 
 /// End of a frame, s of the board's time.
@@ -47,12 +47,12 @@ pub fn in_words(fault: &Fault) -> String {
         Fault::FramesLost { count } => format!("{count} frames lost"),
         Fault::PressedAtBoot { channel } => format!("{} was loaded when the board started", name(channel)),
         Fault::RecordDamaged(kept) => {
-            format!("the last {} to be saved are lost; older ones are used", kept_in_words(kept))
+            format!("the last {} to be saved are lost; older ones are used", kept.name())
         }
         Fault::StoreFull(kept) => {
-            format!("no room to save {}: switch the hand off and on again", kept_in_words(kept))
+            format!("no room to save {}: switch the hand off and on again", kept.name())
         }
-        Fault::StoreFailed(kept) => format!("the flash did not take {}", kept_in_words(kept)),
+        Fault::StoreFailed(kept) => format!("the flash did not take {}", kept.name()),
         Fault::WatchdogReset => "restarted by the watchdog".into(),
         Fault::PanicReset => "restarted after a panic".into(),
         Fault::SupplySagged => "restarted because the supply sagged".into(),
@@ -62,15 +62,6 @@ pub fn in_words(fault: &Fault) -> String {
         }
         Fault::NeverUnloaded => "the force sensor reads a load, and the hand is surely open".into(),
         Fault::BrownOutLevel => "the brown-out level is not 3: set it with a probe (docs/bring-up.md)".into(),
-    }
-}
-
-const fn kept_in_words(kept: Kept) -> &'static str {
-    match kept {
-        Kept::Network => "the network's weights",
-        Kept::Zero => "the force sensor's zeros",
-        Kept::Settings => "the settings",
-        Kept::Emg => "the wearer's calibration",
     }
 }
 
@@ -135,10 +126,10 @@ pub fn words(message: &Up) -> String {
             format!("refused: command {of}: {}", refusal_words(refusal))
         }
         Up::Answer { frame, answer, .. } => told(answer, *frame),
-        Up::Saved { frame, kept } => format!("{} saved: {}", stamp(*frame), kept_in_words(*kept)),
+        Up::Saved { frame, kept } => format!("{} saved: {}", stamp(*frame), kept.name()),
         Up::About(about) => about_words(about),
         Up::Restored(Restored { kept, payload }) => {
-            format!("taken up from flash: {}, {} bytes", kept_in_words(*kept), payload.len())
+            format!("taken up from flash: {}, {} bytes", kept.name(), payload.len())
         }
         Up::Raw(raw) => {
             let lost = raw.frames().iter().filter(|frame| !frame.valid).count();
