@@ -52,6 +52,11 @@ impl MotorDrive {
         }
     }
 
+    /// -1000 (opens) to 1000 (closes).
+    pub const fn signed_permille(self) -> i16 {
+        if self.opens() { -(self.permille() as i16) } else { self.permille() as i16 }
+    }
+
     pub const fn opens(self) -> bool {
         matches!(self, Self::Open(_))
     }

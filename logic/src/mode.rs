@@ -72,8 +72,6 @@ pub const fn closes(mode: GripMode) -> bool {
 mod tests {
     use super::*;
 
-    const ALL: [GripMode; MODES] = [Standby, Wearer, Watch, Slip, Incipient, Settle];
-
     const FIGURE: [&str; MODES] = [
         "W.......", // Standby
         ".S.E....", // Wearer
@@ -88,12 +86,12 @@ mod tests {
     fn every_mode_goes_on_as_drawn_with_every_cause() {
         let ids = [DetectorId::S1, DetectorId::S2];
         for ((from, steps), (n, id)) in
-            ALL.into_iter().zip(FIGURE).flat_map(|row| ids.map(|id| (row, (row.0 as usize, id))))
+            GripMode::ALL.into_iter().zip(FIGURE).flat_map(|row| ids.map(|id| (row, (row.0 as usize, id))))
         {
             let causes =
                 [SensorsReady, SensorsLost, TakenOver, Released, Slips(id), Warned(id), PulseOver, Settled];
             for (cause, letter) in causes.into_iter().zip(steps.chars()) {
-                let to = "SUWLIE".find(letter).map(|place| ALL[place]);
+                let to = "SUWLIE".find(letter).map(|place| GripMode::ALL[place]);
                 assert_eq!(next(from, cause), to, "{from:?}, {cause:?}");
             }
             assert_eq!(closes(from), n == 3 || n == 4, "{from:?}");

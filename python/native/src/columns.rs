@@ -15,11 +15,7 @@ pub const MV: f64 = REFERENCE_MV as f64 / (SAMPLE_MAX as f64 + 4.0);
 
 /// -1 opens, 1 closes, both with the whole supply.
 pub fn signed(drive: MotorDrive) -> f64 {
-    match drive {
-        MotorDrive::Coast => 0.0,
-        MotorDrive::Close(duty) => f64::from(duty.as_per_mille()) / 1e3,
-        MotorDrive::Open(duty) => -f64::from(duty.as_per_mille()) / 1e3,
-    }
+    f64::from(drive.signed_permille()) / 1e3
 }
 
 /// The nearest per mille; 0 and what is no number coast.

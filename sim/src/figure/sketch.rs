@@ -1,7 +1,6 @@
 //! The curves of a run, drawn and thinned while it goes.
 
 use tenax_hal_shim::channel::{FRAMES_PER_SLOW_FRAME, REFERENCE_MV, SAMPLE_MAX};
-use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::{Slow, TickRecord};
 use tenax_hal_shim::words::{DriveSource, GripMode};
 use tenax_scene::truth::Row;
@@ -70,7 +69,8 @@ impl Sketch {
         self.vibration.push((t_s, mv(tick.vibration)));
         for own in &mut self.motor {
             let drives = tick.source == own.source;
-            own.percent.push((t_s, if drives { duty_percent(tick.drive) } else { 0.0 }));
+            own.percent
+                .push((t_s, if drives { f64::from(tick.drive.signed_permille()) / 10.0 } else { 0.0 }));
             own.drove |= drives;
         }
     }
@@ -119,12 +119,4 @@ pub(super) fn mv(sample: u16) -> f64 {
 
 fn per_mille(value: u16) -> f64 {
     f64::from(value) / 1e3
-}
-
-fn duty_percent(drive: MotorDrive) -> f64 {
-    match drive {
-        MotorDrive::Coast => 0.0,
-        MotorDrive::Close(duty) => f64::from(duty.as_per_mille()) / 10.0,
-        MotorDrive::Open(duty) => -f64::from(duty.as_per_mille()) / 10.0,
-    }
 }

@@ -5,7 +5,6 @@ use std::borrow::Cow;
 use tenax_hal_shim::channel::{CHANNELS, mv_from_sample};
 use tenax_hal_shim::detector::Evidence;
 use tenax_hal_shim::frame::Frame;
-use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::{Answer, Counters, Forces, Senses, Setting, Slow, TickRecord, Up};
 use tenax_logic::setting::SettingId;
 
@@ -116,17 +115,11 @@ fn state(slow: &Slow) -> Row {
 }
 
 fn tick(tick: &TickRecord, frame: u32) -> Row {
-    // From -1, opening, to 1, closing.
-    let drive = match tick.drive {
-        MotorDrive::Coast => 0.0,
-        MotorDrive::Close(duty) => thousandth(duty.as_per_mille()),
-        MotorDrive::Open(duty) => -thousandth(duty.as_per_mille()),
-    };
     let fields = [
         ("vibration_mv", Number(mv_from_sample(tick.vibration).into())),
         ("o1", Number(f64::from(tick.outputs[0]) / 128.0)),
         ("o2", Number(f64::from(tick.outputs[1]) / 128.0)),
-        ("drive", Number(drive)),
+        ("drive", Number(thousandth(tick.drive.signed_permille()))),
         ("source", Text(format!("{:?}", tick.source))),
         ("said", Text(names(tick.said))),
         ("believed", Text(names(tick.believed))),
