@@ -46,8 +46,9 @@ pub fn random(root: &Path) -> Bar {
     const PROMISE: &str =
         "1,000,000 random steps: reflex silent while active, open within 2 slow frames, no fault opens";
     let mut cargo = Command::new("cargo");
-    cargo.args(["test", "--quiet", "--release", "--ignore-rust-version", "--package", "tenax-host-tests"]);
-    cargo.args(["--test", "fingertip", "--", "wearer::", "adversary::"]).current_dir(root);
+    // As `cargo tenax test` compiles it: of one package alone, every crate below it would be compiled once more.
+    cargo.args(["test", "--quiet", "--release", "--ignore-rust-version", "--workspace", "--exclude"]);
+    cargo.args(["tenax-firmware", "--test", "fingertip", "--", "wearer::", "adversary::"]).current_dir(root);
     let output = match cargo.output() {
         Ok(output) => output,
         Err(error) => {

@@ -3,6 +3,7 @@
 use rand::rngs::ChaCha8Rng;
 use rand::seq::SliceRandom;
 use rand::{RngExt, SeedableRng};
+use rayon::prelude::*;
 use tenax_hal_shim::wire::EventKind;
 use tenax_hal_shim::words::{Fault, Kept};
 use tenax_sim::board::emulated::{Mishap, Options};
@@ -88,6 +89,9 @@ fn a_hand_whose_supply_sags_slowly_at_each_closing_stays_off_in_the_end() {
     assert_eq!(run(Swing::new(4.4).at_rest(), &options).starts, starts);
 }
 
+/// Rounds in one run: runs are independent, so cores share them.
+const ROUNDS: usize = 10;
+
 /// Three of each cause; `TENAX_RESETS=300` is the bar, and `host-tests/tests/restart.rs` draws thousands.
 // Shows B2.
 #[test]
@@ -100,26 +104,26 @@ fn resets_in_a_drawn_order_are_each_told_right() {
         (Mishap::SupplyIs(2_900), Fault::SupplySagged),
         (Mishap::CrystalStops(true), Fault::CrystalLost),
     ];
-    let mut random = ChaCha8Rng::seed_from_u64(52);
-    let (mut at_s, mut mishaps, mut starts) = (0.25, Vec::new(), vec![None]);
-    let rounds = std::env::var("TENAX_RESETS").map_or(3, |count| count.parse().expect("a number"));
-    for _ in 0..rounds {
-        let mut drawn = causes.clone();
-        drawn.shuffle(&mut random);
-        for (n, (mishap, fault)) in drawn.into_iter().enumerate() {
-            mishaps.extend([(at_s, mishap), (at_s + 0.15, Mishap::SupplyIs(3_300))]);
-            starts.push(Some(fault));
-            at_s += random.random_range(0.3..0.5);
-            // Six restarts in a row would leave the hand off; the pin's is none.
-            if n % 3 == 2 {
-                mishaps.push((at_s, Mishap::ResetByPin));
-                starts.push(None);
-                at_s += 0.25;
+    let rounds: usize = std::env::var("TENAX_RESETS").map_or(3, |count| count.parse().expect("a number"));
+    (0..rounds).into_par_iter().step_by(ROUNDS).for_each(|first| {
+        let mut random = ChaCha8Rng::seed_from_u64(52 + first as u64);
+        let (mut at_s, mut mishaps, mut starts) = (0.25, Vec::new(), vec![None]);
+        for _ in first..rounds.min(first + ROUNDS) {
+            let mut drawn = causes.clone();
+            drawn.shuffle(&mut random);
+            for (mishap, fault) in drawn {
+                mishaps.extend([(at_s, mishap), (at_s + 0.12, Mishap::SupplyIs(3_300))]);
+                starts.push(Some(fault));
+                at_s += random.random_range(0.2..0.3);
             }
+            // Six restarts in a row would leave the hand off; the pin's is none, nor is a lost crystal's.
+            mishaps.push((at_s, Mishap::ResetByPin));
+            starts.push(None);
+            at_s += random.random_range(0.1..0.2);
         }
-    }
-    let run = run(Swing::new(at_s).at_rest(), &Options { mishaps, ..Options::default() });
-    assert_eq!(run.starts, starts);
+        let run = run(Swing::new(at_s).at_rest(), &Options { mishaps, ..Options::default() });
+        assert_eq!(run.starts, starts, "from round {first}");
+    });
 }
 
 #[test]
