@@ -45,35 +45,40 @@ pub fn record<P: Plant>(
     recorder: &mut dyn Recorder,
     progress: &mut dyn FnMut(f64),
 ) -> (Summary, P) {
-    let summary = closed_loop(&mut plant, Grips::Reflex(DetectorSet::ALL), recorder, progress);
+    let summary = closed_loop(&mut plant, DetectorSet::ALL, recorder, progress, &mut |own, _, _| own);
     (summary, plant)
 }
 
-pub fn run_with<P: Plant>(mut plant: P, grips: Grips, progress: &mut dyn FnMut(f64)) -> P {
-    let _kept_by_the_plant = closed_loop(&mut plant, grips, &mut (), progress);
+pub fn run_with<P: Plant>(plant: P, grips: Grips) -> P {
+    let mut ahead = Ahead::default();
+    match grips {
+        Grips::Reflex(detectors) => run_chosen(plant, detectors, &mut |own, _, _| own),
+        Grips::Bound => run_chosen(plant, DetectorSet::NONE, &mut |own, fingertip, plant| {
+            ahead.drive(own, fingertip, plant.planned())
+        }),
+        Grips::Constant(target_n) => run_chosen(plant, DetectorSet::NONE, &mut |own, fingertip, plant| {
+            ahead.drive(own, fingertip, plant.closing_to(target_n))
+        }),
+    }
+}
+
+/// As [`run_with`]; `choose` has the last word about the drive, beside a reflex on these detectors.
+pub fn run_chosen<P: Plant>(mut plant: P, detectors: DetectorSet, choose: &mut Choose<'_>) -> P {
+    let _kept_by_the_plant = closed_loop(&mut plant, detectors, &mut (), &mut |_| {}, choose);
     plant
 }
 
 /// The same for every plant, or the logic would be compiled once for each: 8 s in all that runs one.
 fn closed_loop(
     plant: &mut dyn Plant,
-    grips: Grips,
+    detectors: DetectorSet,
     recorder: &mut dyn Recorder,
     progress: &mut dyn FnMut(f64),
+    choose: &mut Choose<'_>,
 ) -> Summary {
-    let detectors = match grips {
-        Grips::Reflex(detectors) => detectors,
-        Grips::Bound | Grips::Constant(_) => DetectorSet::NONE,
-    };
     let mut board = Stepper::new(plant, detectors, recorder);
-    let mut ahead = Ahead::default();
     for frame in 0..frames_in(plant.duration_s()) {
-        let goes_on = board.frame(plant, recorder, &mut |own, fingertip, plant| match grips {
-            Grips::Reflex(_) => own,
-            Grips::Bound => ahead.drive(own, fingertip, plant.planned()),
-            Grips::Constant(target_n) => ahead.drive(own, fingertip, plant.closing_to(target_n)),
-        });
-        if !goes_on {
+        if !board.frame(plant, recorder, choose) {
             break;
         }
         if frame % PROGRESS_FRAMES == 0 {
