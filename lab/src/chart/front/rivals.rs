@@ -27,7 +27,7 @@ const AT_ONCE: u32 = frames(30);
 /// Readings in which the force does not show yet what the motor has done.
 const NOT_FELT: usize = 3;
 
-/// Deficit that is answered at full duty, and how far ahead.
+/// Deficit that is answered at full duty, and how far ahead: of 1, 4 and 12 N on 30 drawn worlds of seed 2 the largest that loses no more.
 pub const BAND_MN: f64 = 4_000.0;
 const AHEAD_S: f64 = 0.03;
 const AIM: f64 = 1.2;
