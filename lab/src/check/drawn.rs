@@ -16,7 +16,7 @@ const GOALS: [Goal; 4] = [
 ];
 /// Of one hour; `tenax evaluate disturbed --hours 48` is the night's.
 const NEEDLESS: Goal =
-    Goal { what: "drawn hour of disturbance: closings without need", goal: 0.0, held: 16.0 };
+    Goal { what: "drawn hour of disturbance: closings without need", goal: 0.0, held: 10.0 };
 
 pub fn hour() -> anyhow::Result<Vec<Bar>> {
     let hour = disturbed::evaluate(SEED, 60 / MINUTES, &|_| {})?;
