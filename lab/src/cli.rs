@@ -34,9 +34,7 @@ enum Command {
     /// Fit intent recognition to recordings of people
     #[command(subcommand, arg_required_else_help = true, after_help = ARRAY)]
     Train(Of<train::Args>),
-    /// Score intent recognition on recordings of people
-    #[command(subcommand, arg_required_else_help = true)]
-    Evaluate(Of<evaluate::Args>),
+    Evaluate(evaluate::Args),
     Chart(chart::Args),
     Vision(vision::Args),
 }
@@ -54,7 +52,7 @@ pub fn main() -> ExitCode {
         Command::Learn(args) => learn::main(&args),
         Command::Dataset(args) => dataset::main(&args),
         Command::Train(Of::Emg(args)) => train::main(&args),
-        Command::Evaluate(Of::Emg(args)) => evaluate::main(&args),
+        Command::Evaluate(args) => evaluate::main(&args),
         Command::Chart(args) => chart::main(&args),
         Command::Vision(args) => vision::main(&args),
     })

@@ -1,4 +1,5 @@
-//! `tenax evaluate emg`: intent recognition on people. `tenax train emg` fits it to them.
+//! `tenax evaluate`: intent recognition on people, the hand in hours of disturbance. `tenax train emg` fits the former.
 
+pub mod disturbed;
 pub mod emg;
 pub mod fit;

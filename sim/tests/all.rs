@@ -20,5 +20,6 @@ mod reflex;
 mod relax;
 mod replay;
 mod report;
+mod rows;
 mod sliding;
 mod subsets;

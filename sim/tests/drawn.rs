@@ -1,6 +1,6 @@
 //! Worlds that are drawn: the same ones for the same seed, none absurd, and a hand that leaves them to the wearer.
 
-use tenax_scene::drawn::{Family, nth};
+use tenax_scene::drawn::{Drawn, Family, nth};
 use tenax_sim::drawn::{Report, Score, scores};
 use tenax_sim::report::bound::SAME_MM;
 
@@ -27,6 +27,11 @@ fn drawn_worlds_are_sane_and_their_scores_hold_together() {
         assert!(statics.iter().zip(&slidings).all(|(mu_s, mu_d)| mu_d <= mu_s && *mu_d >= 0.05));
     }
     assert_ne!(nth(None, SEED, 0).text, nth(None, SEED + 1, 0).text);
+    for n in 0..10 * COUNT {
+        let drawn = Drawn::hold(SEED, n, 10);
+        let file = drawn.scene().unwrap_or_else(|error| panic!("{error}\n{}", drawn.text));
+        assert!((600.0..630.0).contains(&file.duration_s()), "{} s", file.duration_s());
+    }
 
     let first = scores(None, SEED, COUNT, &|_| {}).unwrap();
     assert_eq!(first[..8], scores(None, SEED, 8, &|_| {}).unwrap(), "the same world, the same score");

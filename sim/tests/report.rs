@@ -21,8 +21,8 @@ const KEYS: &str = "
     wearer.closing_s wearer.opening_s wearer.longest_open_ms wearer.longest_close_ms wearer.faults
     wearer.vibration_steps wearer.vibration_s
     margin.least_mn margin.last_mn
-    reflex.pulses reflex.without_slip reflex.added_n reflex.added_without_need_n reflex.relaxed_n
-    added_n added_without_need_n relaxed_n object.kept object.left_behind
+    reflex.pulses reflex.without_slip reflex.added_n reflex.added_without_need_n reflex.closings_without_need reflex.relaxed_n
+    added_n added_without_need_n closings_without_need relaxed_n object.kept object.left_behind
     object.handed_over object.turned_deg behaviours
 ";
 

@@ -1,11 +1,14 @@
 //! `tenax chart front`: what a grip pays in newtons for what it loses and lets slide, on drawn worlds.
 
+mod rivals;
+
 use plotters::style::RGBColor;
 use rayon::prelude::*;
-use tenax_frames::quantile::not_exceeded;
+use tenax_hal_shim::channel::{FRAME_HZ, FRAMES_PER_SLOW_FRAME};
 use tenax_hal_shim::detector::{DetectorId, DetectorSet};
 use tenax_scene::SceneFile;
 use tenax_scene::drawn::nth;
+use tenax_scene::plant::Plant;
 use tenax_sim::board::simulated::Grips;
 use tenax_sim::drawn::HALF_PAD_MM;
 use tenax_sim::jobs::Jobs;
@@ -15,17 +18,26 @@ use tenax_sim::report::fate::Fate;
 use tenax_sim::session::controls;
 
 use super::{Chart, Progress, csv};
+use rivals::{BAND_MN, Grip, Rival};
 
 const CONSTANTS_N: [f64; 6] = [1.0, 2.0, 4.0, 8.0, 16.0, 32.0];
 const CONSTANT: &str = "constant grip, 1 to 32 N";
 const HAND: &str = "the hand";
-const KEPT: &str = "kept by the hand";
-const LOST: &str = "lost";
-const THEORY: &str = "a step that is seen a dead time late";
-/// Way and loss that a logarithm can show.
-const LEAST_MM: f64 = 0.3;
-const LEAST_N: f64 = 0.5;
+const NOBODY: &str = "no reflex";
+const RIVALS: [(&str, Rival); 3] = [
+    ("S1, fixed pulses", Rival::Fixed),
+    ("S1, S2, sized pulses", Rival::Sized),
+    ("proportional with lead", Rival::Lead),
+];
+/// Newtons that the axis begins with.
+const LEAST_N: f64 = 2.0;
 const PAD_MM: f64 = 18.0;
+/// Peak over what is needed from which a loop counts as too fast.
+const OVER: f64 = 1.5;
+/// Peak over the wearer's own from which the hand has closed.
+const CLOSES: f64 = 1.02;
+const MARKS: [(&str, RGBColor); 3] =
+    [("the hand leaves it", colour::GREY), ("closes", colour::VERMILLION), ("loses", colour::BLUE)];
 /// Deviations of an interval of 95 %.
 const WIDE: f64 = 1.96;
 
@@ -37,8 +49,9 @@ struct Run {
 
 struct World {
     name: String,
-    /// Force that the motor adds within its dead time.
-    in_flight_n: f64,
+    dead_s: f64,
+    rate_n_s: f64,
+    hysteresis: f64,
     needed_n: Option<f64>,
     runs: Vec<Run>,
 }
@@ -60,11 +73,12 @@ pub fn front(seed: u64, count: u32, progress: Progress) -> anyhow::Result<Chart>
         world.runs.iter().map(move |Run { grip, fate }| {
             let words = [world.name.clone(), grip.clone(), fate.kept().to_string()];
             let own = [Some(fate.distance_mm), fate.beyond_need_n, fate.peak_grip_n];
-            let numbers = own.into_iter().chain([world.needed_n, Some(world.in_flight_n)]);
+            let numbers = own.into_iter().chain([world.needed_n]);
+            let numbers = numbers.chain([world.dead_s, world.rate_n_s, world.hysteresis].map(Some));
             words.into_iter().chain(numbers.map(number)).collect()
         })
     });
-    let csv = csv("world,grip,kept,slid_mm,beyond_need_n,peak_n,needed_n,in_flight_n", rows)?;
+    let csv = csv("world,grip,kept,slid_mm,beyond_need_n,peak_n,needed_n,dead_s,rate_n_s,hysteresis", rows)?;
     let sheet = Sheet::new(
         "What a grip pays for what it saves",
         format!(
@@ -72,7 +86,13 @@ pub fn front(seed: u64, count: u32, progress: Progress) -> anyhow::Result<Chart>
             worlds.len()
         ),
         3,
-        vec![lost_panel(&worlds), slid_panel(&worlds), flight_panel(&worlds)],
+        vec![
+            lost_panel(&worlds),
+            slid_panel(&worlds),
+            flight_panel(&worlds),
+            gain_panel(&worlds),
+            hysteresis_panel(&worlds),
+        ],
     );
     Chart::new("front", &sheet, csv)
 }
@@ -86,17 +106,20 @@ fn in_every_grip(file: &SceneFile, seed: u64, name: String) -> anyhow::Result<Op
     let hand = controls::gripped(file, seed, Grips::Reflex(DetectorSet::ALL));
     let bound = controls::bound(file, seed, &hand);
     let needed_n = bound.peak_grip_n;
-    let alone = [DetectorId::S1, DetectorId::S2, DetectorId::Mlp].map(|id| {
-        let grips = Grips::Reflex(DetectorSet::only(id));
-        (format!("{} alone", id.name()), controls::gripped(file, seed, grips))
-    });
+    let s1 = controls::gripped(file, seed, Grips::Reflex(DetectorSet::only(DetectorId::S1)));
     let nobody = controls::gripped(file, seed, Grips::Reflex(DetectorSet::NONE));
+    let rivals = RIVALS.map(|(name, rival)| {
+        let mut grip = Grip::new(rival);
+        let mut choose = |own, fingertip: &_, _: &dyn Plant| grip.drive(own, fingertip);
+        (name.to_owned(), controls::chosen(file, seed, &mut choose))
+    });
     let constant =
         CONSTANTS_N.map(|n| (format!("constant {n} N"), controls::gripped(file, seed, Grips::Constant(n))));
-    let own = [(HAND, hand), ("causal oracle", oracle), ("the bound", bound), ("no reflex", nobody)];
-    let runs = own.into_iter().map(|(grip, fate)| (grip.to_owned(), fate)).chain(alone).chain(constant);
-    let runs = runs.map(|(grip, fate)| Run { grip, fate }).collect();
-    Ok(Some(World { name, in_flight_n: file.force_in_flight_n(), needed_n, runs }))
+    let own = [(HAND, hand), ("the hand, S1 alone", s1), ("causal oracle", oracle), ("the bound", bound)];
+    let own = own.into_iter().chain([(NOBODY, nobody)]).map(|(grip, fate)| (grip.to_owned(), fate));
+    let runs = own.chain(rivals).chain(constant).map(|(grip, fate)| Run { grip, fate }).collect();
+    let [dead_s, rate_n_s] = file.motor();
+    Ok(Some(World { name, dead_s, rate_n_s, hysteresis: file.hysteresis(), needed_n, runs }))
 }
 
 /// Grips in their order, with every run of each.
@@ -109,14 +132,17 @@ fn by_grip(worlds: &[World]) -> Vec<(&str, Vec<&Fate>)> {
 /// Least, value and most.
 type Interval = [f64; 3];
 
+fn mean(all: impl Iterator<Item = f64> + Clone) -> Interval {
+    let count = all.clone().count().max(1) as f64;
+    let mean = all.clone().sum::<f64>() / count;
+    let variance = all.map(|n| (n - mean) * (n - mean)).sum::<f64>() / count;
+    let wide = WIDE * (variance / count).sqrt();
+    [mean - wide, mean, mean + wide]
+}
+
 /// Newtons beyond need while it was carried, mean of the worlds.
 fn paid(fates: &[&Fate]) -> Interval {
-    let all: Vec<f64> = fates.iter().filter_map(|fate| fate.beyond_need_n).collect();
-    let count = all.len().max(1) as f64;
-    let mean = all.iter().sum::<f64>() / count;
-    let variance = all.iter().map(|n| (n - mean) * (n - mean)).sum::<f64>() / count;
-    let wide = WIDE * (variance / count).sqrt();
-    [mean - wide, mean, mean + wide].map(|n| n.max(LEAST_N))
+    mean(fates.iter().filter_map(|fate| fate.beyond_need_n)).map(|n| n.max(LEAST_N))
 }
 
 /// Wilson's interval of a part.
@@ -134,16 +160,10 @@ fn lost_panel(worlds: &[World]) -> Panel {
 }
 
 fn slid_panel(worlds: &[World]) -> Panel {
-    let slid = |fates: &[&Fate]| {
-        let mm = |fate: &&Fate| if fate.kept() { fate.distance_mm.min(PAD_MM) } else { PAD_MM };
-        let mut all: Vec<f64> = fates.iter().map(mm).collect();
-        all.sort_by(f64::total_cmp);
-        // Order statistics beside the quantile, by the binomial's deviation.
-        let wide = WIDE * (0.95 * 0.05 / all.len().max(1) as f64).sqrt();
-        [0.95 - wide, 0.95, (0.95 + wide).min(1.0)]
-            .map(|part| not_exceeded(all.iter().copied(), part).unwrap_or(0.0).max(LEAST_MM))
-    };
-    let axis = Axis::log("slid in 95 % of the worlds, mm", 0.8 * LEAST_MM, 1.4 * PAD_MM);
+    let mm = |fate: &&Fate| if fate.kept() { fate.distance_mm.min(PAD_MM) } else { PAD_MM };
+    let slid = |fates: &[&Fate]| mean(fates.iter().map(mm));
+    let most = by_grip(worlds).iter().map(|(_, fates)| slid(fates)[2]).fold(1.0, f64::max);
+    let axis = Axis::even("slid, mean, mm; the pad of 18 mm where it is lost", 0.0, 1.1 * most);
     Panel::new("what slides", axis, cost(worlds), points(worlds, &slid))
 }
 
@@ -169,38 +189,99 @@ fn points(worlds: &[World], of: &dyn Fn(&[&Fate]) -> Interval) -> Vec<Series> {
 fn look(grip: &str) -> (&str, RGBColor) {
     let colour = match grip {
         HAND => colour::VERMILLION,
+        "the hand, S1 alone" => colour::BLUE,
         "causal oracle" => colour::GREEN,
         "the bound" => colour::SKY,
-        "s1 alone" => colour::BLUE,
-        "s2 alone" => colour::ORANGE,
-        "mlp alone" => colour::PURPLE,
-        "no reflex" => colour::YELLOW,
+        NOBODY => colour::YELLOW,
+        "S1, fixed pulses" => colour::ORANGE,
+        "S1, S2, sized pulses" => colour::PURPLE,
+        "proportional with lead" => colour::BLACK,
         _ => colour::GREY,
     };
     (if grip.starts_with("constant") { CONSTANT } else { grip }, colour)
 }
 
-/// Where the motor is the limit: what is on its way when the force is seen comes beyond what is needed.
+impl World {
+    fn fate(&self, grip: &str) -> Option<&Fate> {
+        self.runs.iter().find(|run| run.grip == grip).map(|run| &run.fate)
+    }
+
+    /// Peak force over the bound's; 0 for what is lost.
+    fn peak(&self, grip: &str) -> Option<f64> {
+        let (fate, needed_n) = (self.fate(grip)?, self.needed_n.filter(|&n| n > 0.0)?);
+        if fate.kept() { Some(fate.peak_grip_n? / needed_n) } else { Some(0.0) }
+    }
+}
+
+/// Where each world lies on two axes, and what became of it: the number of a mark.
+type Placed = (f64, f64, usize);
+
+/// A map of worlds with a line of theory. What lies beyond an axis is drawn at its end.
+fn map(
+    title: &str,
+    [x, y]: [Axis; 2],
+    theory: (&str, &dyn Fn(f64) -> f64),
+    marks: [(&str, RGBColor); 3],
+    placed: &[Placed],
+) -> Panel {
+    let (from, to) = x.ends;
+    let at = |part: f64| if x.log { from * (to / from).powf(part) } else { from + (to - from) * part };
+    let line = (0..=40).map(|n| at(f64::from(n) / 40.0)).map(|x| (x, theory.1(x)));
+    let mut series =
+        vec![Series::new(theory.0, colour::GREY, Mark::Dashes, line.filter(|point| y.shows(point.1)))];
+    for (n, (name, colour)) in marks.into_iter().enumerate() {
+        let own = placed.iter().filter(|placed| placed.2 == n);
+        let own = own.map(|&(at, value, _)| (at.clamp(from, to), value.clamp(y.ends.0, y.ends.1)));
+        series.push(Series::new(name, colour, if n == 2 { Mark::Crosses } else { Mark::Dots }, own));
+    }
+    Panel::new(title, x, y, series)
+}
+
+/// Dead time by stiffness: what is on its way when the force is seen comes beyond what is needed.
 fn flight_panel(worlds: &[World]) -> Panel {
     let place = |world: &World| {
-        let needed_n = world.needed_n.filter(|&n| n > 0.0)?;
-        let hand = world.runs.iter().find(|run| run.grip == HAND)?;
-        Some((world.in_flight_n / needed_n, hand.fate.peak_grip_n? / needed_n, hand.fate.kept()))
+        let (peak, nobody) = (world.peak(HAND)?, world.fate(NOBODY)?.peak_grip_n?);
+        let in_flight = world.dead_s * world.rate_n_s / world.needed_n?;
+        let closes = world.fate(HAND)?.peak_grip_n? > CLOSES * nobody;
+        Some((in_flight, peak, if peak == 0.0 { 2 } else { usize::from(closes) }))
     };
-    let places: Vec<(f64, f64, bool)> = worlds.iter().filter_map(place).collect();
-    let of = |kept: bool| places.iter().filter(move |place| place.2 == kept).map(|&(x, y, _)| (x, y));
-    let ends = |least: f64, most: f64, of: &dyn Fn(&(f64, f64, bool)) -> f64| {
-        let all = places.iter().map(of);
-        all.fold((least, most), |(low, high), value| (low.min(0.9 * value), high.max(1.1 * value)))
-    };
-    let (left, right) = ends(0.1, 1.0, &|place| place.0);
-    let (low, high) = ends(0.5, 2.0, &|place| place.1);
-    let theory = (0..=40).map(|n| left * (right / left).powf(f64::from(n) / 40.0)).map(|x| (x, 1.0 + x));
-    let series = vec![
-        Series::new(THEORY, colour::GREY, Mark::Dashes, theory.filter(|point| point.1 <= high)),
-        Series::new(KEPT, colour::VERMILLION, Mark::Dots, of(true)),
-        Series::new(LOST, colour::BLUE, Mark::Crosses, of(false)),
+    let placed: Vec<Placed> = worlds.iter().filter_map(place).collect();
+    let axes = [
+        Axis::log("force in flight over what is needed", 0.03, 10.0),
+        Axis::log("peak over what is needed", 0.8, 5.0),
     ];
-    let x = Axis::log("force in flight over what is needed", left, right);
-    Panel::new("where the motor is the limit", x, Axis::log("peak over what is needed", low, high), series)
+    map("dead time by stiffness", axes, ("seen a dead time late", &|x| 1.0 + x), MARKS, &placed)
+}
+
+/// Delay by gain: an integrator with a dead time overshoots from 1/e on.
+fn gain_panel(worlds: &[World]) -> Panel {
+    let reading_s = f64::from(FRAMES_PER_SLOW_FRAME) / f64::from(FRAME_HZ);
+    let place = |world: &World| {
+        let peak = world.peak(RIVALS[2].0)?;
+        let mark = if peak == 0.0 { 2 } else { usize::from(peak > OVER) };
+        Some((1e3 * (world.dead_s + reading_s), 1e3 * world.rate_n_s / BAND_MN, mark))
+    };
+    let placed: Vec<Placed> = worlds.iter().filter_map(place).collect();
+    let axes = [
+        Axis::log("dead time and a reading, ms", 20.0, 120.0),
+        Axis::log("gain of proportional with lead, 1/s", 1.0, 1_000.0),
+    ];
+    let marks = [("at most 1.5 times", colour::GREY), ("above", colour::VERMILLION), ("lost", colour::BLUE)];
+    map("delay by gain", axes, ("gain times delay 1/e", &|ms| 1e3 / std::f64::consts::E / ms), marks, &placed)
+}
+
+/// Hysteresis by margin: a grip nearer to need than the force is read cannot be told from one that slips.
+fn hysteresis_panel(worlds: &[World]) -> Panel {
+    let place = |world: &World| {
+        let (hand, nobody_n) = (world.fate(HAND)?, world.fate(NOBODY)?.peak_grip_n?);
+        let margin = nobody_n / hand.needed_force_n.filter(|&n| n > 0.0)?;
+        let closes = hand.peak_grip_n? > CLOSES * nobody_n;
+        Some((world.hysteresis, margin, if hand.kept() { usize::from(closes) } else { 2 }))
+    };
+    let placed: Vec<Placed> = worlds.iter().filter_map(place).collect();
+    let axes = [
+        Axis::even("hysteresis of the force sensor, half width", 0.015, 0.085),
+        Axis::log("the wearer's own grip over need", 0.3, 5.0),
+    ];
+    map("hysteresis by margin", axes, ("read as need", &|h| (1.0 + h) / (1.0 - h)), MARKS, &placed)
 }

@@ -37,10 +37,10 @@ pub struct Line {
     /// The report less macro onset, ms, of those that were caught; negative is early.
     pub latency_ms_p50: Option<f64>,
     pub latency_ms_p95: Option<f64>,
-    /// False alarms an hour in quiet minutes, in disturbed ones, and while balls are poured and boxes are lifted.
+    /// False alarms an hour in quiet minutes, in disturbed ones, and between slips as balls are poured and boxes are lifted.
     pub quiet: Option<Between>,
     pub disturbed: Option<Between>,
-    pub slipping: Option<f64>,
+    pub between_slips: Option<Between>,
     /// The threshold that was chosen on other fingertips.
     pub threshold: Option<i32>,
 }
@@ -54,7 +54,7 @@ impl Line {
             latency_ms_p95: scored.latency_ms(0.95),
             quiet: scored.false_per_hour(Kind::Quiet),
             disturbed: scored.false_per_hour(Kind::Disturbed),
-            slipping: scored.false_per_hour(Kind::Slips).map(|[value, ..]| value),
+            between_slips: scored.false_per_hour(Kind::Slips),
             threshold: row.threshold,
         }
     }

@@ -17,6 +17,8 @@ const OF_BOUND: f64 = 1.5;
 /// Slid: half the pad, mm. The bound knows when the glass gets wet and does not let it slide at all.
 const SLID_MM: f64 = 9.0;
 const LOAD_PERCENT: f64 = 20.0;
+/// 1 % of the core, 1 MHz: 100 uA by DS10314 (features, peripherals off) at 3.3 V, uJ/s.
+const PERCENT_UJ_S: f64 = 100.0 * 3.3;
 
 /// The bars of one run; those of the image where `image` is the emulated board's ELF file. Fails if the board cannot be run.
 pub fn bars(board: &Board, image: Option<&Path>) -> anyhow::Result<Vec<Bar>> {
@@ -103,7 +105,9 @@ fn load(report: &Report) -> Bar {
     let [few, many] = CYCLES_PER_INSTRUCTION;
     let measured = format!(
         "{mean:.0} instructions a tick, {max} at worst: {low:.1} to {high:.1} % at {few:.0} to {many:.0} cycles each \
-         (interrupts and telemetry included: {core_low:.1} to {core_high:.1} %)"
+         (interrupts and telemetry included: {core_low:.1} to {core_high:.1} %, {:.0} to {:.0} uJ/s by DS10314's 100 uA/MHz)",
+        PERCENT_UJ_S * core_low,
+        PERCENT_UJ_S * core_high
     );
     Bar::new(promise, measured, limit, high < LOAD_PERCENT)
 }

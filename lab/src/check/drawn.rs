@@ -1,8 +1,9 @@
-//! Worlds that are drawn, of a seed on which nothing is chosen. Their causal oracle knows slip, not the future.
+//! Worlds and an hour of disturbance that are drawn, of a seed on which nothing is chosen. Their causal oracle knows slip, not the future.
 
 use tenax_sim::drawn::{Report, scores};
 
 use super::{Bar, Goal};
+use crate::evaluate::disturbed::{self, MINUTES};
 
 /// Seeds below 1000 are for choosing.
 const SEED: u64 = 1_000;
@@ -13,6 +14,19 @@ const GOALS: [Goal; 4] = [
     Goal { what: "drawn worlds: peak force over the needed one, 95 % of the worlds", goal: 1.8, held: 2.4 },
     Goal { what: "drawn worlds: force without need, N a world", goal: 0.3, held: 0.8 },
 ];
+/// Of one hour; `tenax evaluate disturbed --hours 48` is the night's.
+const NEEDLESS: Goal =
+    Goal { what: "drawn hour of disturbance: closings without need", goal: 0.0, held: 10.0 };
+
+pub fn hour() -> anyhow::Result<Vec<Bar>> {
+    let hour = disturbed::evaluate(SEED, 60 / MINUTES, &|_| {})?;
+    let [a_day, low, high] = hour.without_need_a_day;
+    let by = format!(
+        "{a_day:.0} a day of holding, {low:.0} to {high:.0} by 95 %; {} closings, {} slips, {} of {} holds lost in {:.2} h",
+        hour.closings, hour.slips, hour.lost, hour.holds, hour.hours
+    );
+    Ok(vec![Bar::short_of(NEEDLESS, f64::from(hour.without_need), by)])
+}
 
 pub fn bars() -> anyhow::Result<Vec<Bar>> {
     let total = Report::new(SEED, &scores(None, SEED, WORLDS, &|_| {})?)?.total;

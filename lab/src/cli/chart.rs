@@ -32,7 +32,7 @@ pub struct Args {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Subject {
-    /// Newtons beyond need against losses and millimetres on drawn worlds: the hand, detectors alone, no reflex, constant
+    /// Newtons beyond need against losses and millimetres on drawn worlds: the hand, rival controllers, no reflex, constant
     /// grips, a causal oracle, the bound
     Front,
     /// Accuracy and latency of intent recognition on recorded people against false motions: the hand and plain control

@@ -38,6 +38,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     let options = Options { minutes: learn::MINUTES, ..Options::default() };
     groups.push(Box::new(move || learn::bars(&options, &|_, _| ())));
     groups.push(Box::new(drawn::bars));
+    groups.push(Box::new(drawn::hour));
     groups.push(Box::new(array::bars));
     let bars: Vec<Vec<Bar>> = with_bar("check", |progress| {
         let jobs = Jobs::new(groups.len(), progress);

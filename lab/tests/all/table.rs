@@ -13,12 +13,12 @@ fn every_row_has_the_keys_and_the_same_slips_and_its_intervals_bracket() {
     let table = table(&[plan(1), plan(2), plan(3)], &|_| {}).unwrap();
     assert!(table.slips_1mm > 5, "{}", table.slips_1mm);
     let Value::Array(rows) = serde_json::to_value(&table).unwrap()["rows"].take() else { panic!("no rows") };
-    let keys = "name recall_1mm latency_ms_p50 latency_ms_p95 quiet disturbed slipping";
+    let keys = "name recall_1mm latency_ms_p50 latency_ms_p95 quiet disturbed between_slips";
     for row in &rows {
         let has = |key: &str| row.get(key).is_some();
         assert!(keys.split_whitespace().all(has), "{row}");
         let between = |key: &str| [0, 1, 2].map(|n| row[key][n].as_f64().unwrap());
-        for key in ["recall_1mm", "quiet", "disturbed"] {
+        for key in ["recall_1mm", "quiet", "disturbed", "between_slips"] {
             let [value, low, high] = between(key);
             assert!(low <= value && value <= high && low < high, "{row}");
         }

@@ -203,7 +203,7 @@ impl World {
         self.watch.vibration = 0;
         for _ in 0..frames.min(self.until - self.frames) {
             let reflex = self.reflex;
-            let goes_on = self.board.frame_with(&mut self.plant, &mut self.watch, &|own, fingertip| {
+            let goes_on = self.board.frame_with(&mut self.plant, &mut self.watch, &mut |own, fingertip, _| {
                 let source = fingertip.last_tick().unwrap_or_default().source;
                 let is_reflex = reflex && source == DriveSource::Reflex;
                 match own {

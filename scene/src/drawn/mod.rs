@@ -52,12 +52,22 @@ pub struct Drawn {
 impl Drawn {
     pub fn new(family: Family, seed: u64, index: u32) -> Self {
         let noise_seed = mixed(mixed(mixed(seed) ^ family as u64) ^ u64::from(index)) >> 16;
-        let mut page = Page { text: String::new(), noise: Noise::new(noise_seed, Source::Drawn) };
+        Self::on(Page::new(noise_seed, HAPPENS_S), family, seed, index, |page| page.world(family))
+    }
+
+    /// An object that is held for so many minutes, with everyday disturbances all along.
+    pub fn hold(seed: u64, index: u32, minutes: u32) -> Self {
+        let noise_seed = mixed(mixed(!seed) ^ u64::from(index)) >> 16;
+        let page = Page::new(noise_seed, 60.0 * f64::from(minutes));
+        Self::on(page, Family::DisturbedHold, seed, index, |page| page.day(minutes))
+    }
+
+    fn on(mut page: Page, family: Family, seed: u64, index: u32, draw: impl FnOnce(&mut Page)) -> Self {
+        let (noise_seed, name) = (page.seed, family.name());
         page.put(format_args!(
-            "# World {index} of {}, drawn from seed {seed}. Its noise: --seed {noise_seed}",
-            family.name()
+            "# World {index} of {name}, drawn from seed {seed}. Its noise: --seed {noise_seed}"
         ));
-        page.world(family);
+        draw(&mut page);
         Self { family, index, text: page.text, noise_seed }
     }
 
@@ -107,6 +117,9 @@ const LEAST_MU: f64 = 0.05;
 struct Page {
     text: String,
     noise: Noise,
+    seed: u64,
+    /// For so long something may happen after the grasp, s.
+    happens_s: f64,
 }
 
 /// What the events of a world are drawn around.
@@ -119,6 +132,10 @@ struct Held {
 }
 
 impl Page {
+    fn new(seed: u64, happens_s: f64) -> Self {
+        Self { text: String::new(), noise: Noise::new(seed, Source::Drawn), seed, happens_s }
+    }
+
     fn put(&mut self, line: std::fmt::Arguments<'_>) {
         writeln!(self.text, "{line}").expect("a string takes all");
     }
@@ -211,7 +228,7 @@ impl Page {
             "name = \"drawn\"\ntitle = \"{}\"\nfrom = \"drawn, scene/src/drawn\"\nslip_floor_mm_s = 1.0",
             family.name()
         ));
-        self.put(format_args!("duration_s = {:.3}", from_s + HAPPENS_S + 0.5));
+        self.put(format_args!("duration_s = {:.3}", from_s + self.happens_s + 0.5));
         let level = if self.happens(ranges::BRUSH_PART) { "l1" } else { "l0" };
         let pitch_mm = self.draw(ranges::PITCH_MM);
         self.table(
@@ -321,14 +338,61 @@ impl Page {
         }
         if self.happens(0.5) {
             let at_s = held.from_s + self.between(0.0, 2.0);
-            self.table("[[hum]]", &[("at_s", at_s)]);
-            self.drawn(&[("peak_mv", ranges::MAINS_MV)]);
-            let (hum_hz, for_s) = (self.mains_hz(), self.between(1.0, 3.5));
-            self.number("hum_hz", hum_hz);
-            self.number("for_s", for_s);
+            self.hum(at_s, ranges::HUM_S);
         }
         if self.happens(0.5) {
-            self.bump(held);
+            self.bump(held.from_s, [0.5, HAPPENS_S - 1.0]);
+        }
+    }
+
+    fn hum(&mut self, at_s: f64, for_s: Law) {
+        self.table("[[hum]]", &[("at_s", at_s)]);
+        self.drawn(&[("peak_mv", ranges::MAINS_MV)]);
+        let (hum_hz, for_s) = (self.mains_hz(), self.draw(for_s));
+        self.number("hum_hz", hum_hz);
+        self.number("for_s", for_s);
+    }
+
+    /// Minutes in which the wearer stands, walks or is driven; whatever else comes at its own rate.
+    fn day(&mut self, minutes: u32) {
+        let held = self.grasp(Family::DisturbedHold);
+        let [knocks, bumps, hums] =
+            [ranges::KNOCKS_H, ranges::BUMPS_H, ranges::HUMS_H].map(|law| self.draw(law) / 3_600.0);
+        let [walks, drives] = [self.between(0.0, 0.5), self.between(0.0, 0.2)];
+        for minute in 0..minutes {
+            let from_s = held.from_s + 60.0 * f64::from(minute);
+            let kind = self.between(0.0, 1.0);
+            let laws = if kind < walks {
+                [ranges::WALK_HZ, ranges::WALK_M_S2]
+            } else if kind < walks + drives {
+                [ranges::DRIVE_HZ, ranges::DRIVE_M_S2]
+            } else {
+                [ranges::TREMOR_HZ, ranges::TREMOR_M_S2]
+            };
+            let ([rate, peak], for_s) = (laws.map(|law| self.draw(law)), self.draw(ranges::STRETCH_S));
+            // A scene's swing has at most 255 cycles.
+            self.swing(from_s, (for_s * rate).ceil().min(255.0), rate, peak);
+            for s in 0..60 {
+                let at_s = from_s + f64::from(s);
+                if self.happens(knocks) {
+                    self.knock(at_s, 1.0);
+                }
+                if self.happens(bumps) {
+                    self.bump(at_s, [0.0, 1.0]);
+                }
+                if self.happens(hums) {
+                    self.hum(at_s, ranges::STRETCH_S);
+                }
+            }
+        }
+        for film in 1..=12 {
+            self.put(format_args!(
+                "\n[[fault]]\nchannel = \"pvdf_{film}\"\nkind = \"drift\"\nreason = \"creep\""
+            ));
+            self.number("at_s", held.from_s);
+            // Millivolts a second, to six places.
+            let per_s = self.draw(ranges::FILM_DRIFT_MV_S);
+            self.put(format_args!("drift_per_s = {per_s:.6}"));
         }
     }
 
@@ -415,7 +479,7 @@ impl Page {
         let cycles = (self.between(1.0, 4.5) * rate_hz).ceil();
         self.swing(at_s, cycles, rate_hz, peak_m_s2);
         if self.happens(0.5) {
-            self.bump(held);
+            self.bump(held.from_s, [0.5, HAPPENS_S - 1.0]);
         }
     }
 
@@ -428,9 +492,9 @@ impl Page {
     }
 
     /// The hand hits something: the object and the films feel it together.
-    fn bump(&mut self, held: &Held) {
+    fn bump(&mut self, from_s: f64, [least_s, most_s]: [f64; 2]) {
         let [peak_m_s2, for_ms] = [ranges::BUMP_M_S2, ranges::BUMP_MS].map(|law| self.draw(law));
-        let at_s = held.from_s + self.between(0.5, HAPPENS_S - 1.0);
+        let at_s = from_s + self.between(least_s, most_s);
         self.swing(at_s, 1.0, 1e3 / for_ms, peak_m_s2);
         self.knock(at_s, 1e-3);
     }

@@ -179,3 +179,17 @@ pub const BUMP_MS: Law = log_uniform(10.0, 50.0); // A
 /// From a slip's cause to the next: the same cause, still loading.
 pub const AGAIN_S: Law = log_normal(0.4, 0.8, 0.05, 3.0); // A
 pub const AGAIN_PART: f64 = 0.5; // A
+
+// Hours of holding.
+
+pub const KNOCKS_H: Law = log_uniform(2.0, 200.0); // A: of the socket and of what the hand touches
+pub const BUMPS_H: Law = log_uniform(1.0, 30.0); // A
+pub const HUMS_H: Law = log_uniform(1.0, 30.0); // A: machines near by, on 50 or 60 Hz
+pub const HUM_S: Law = uniform(1.0, 3.5); // A
+pub const STRETCH_S: Law = log_uniform(5.0, 50.0); // A: of walking, driving, trembling, hum
+pub const DRIVE_HZ: Law = uniform(1.0, 20.0); // a vehicle
+pub const DRIVE_M_S2: Law = log_uniform(0.14, 1.4); // A: 0.1 to 1 m/s^2 rms
+pub const TREMOR_HZ: Law = uniform(8.0, 12.0); // physiological
+pub const TREMOR_M_S2: Law = log_uniform(0.05, 0.3); // A
+/// Offset of a charge amplifier, up to 30 mV an hour (A).
+pub const FILM_DRIFT_MV_S: Law = uniform(-8e-3, 8e-3);

@@ -108,10 +108,15 @@ impl SceneFile {
             .map_err(|error| sources.of_toml(error.span().unwrap_or(0..0), error.message()))
     }
 
-    /// Force that the unloaded motor adds to the grip within its dead time, N; 0 without an object. Each pad takes half of the way.
-    pub fn force_in_flight_n(&self) -> f64 {
+    /// The motor's dead time, s, and the force that it adds unloaded, N/s: 0 without an object. Each pad takes half of the way.
+    pub fn motor(&self) -> [f64; 2] {
         let stiffness = self.object.as_ref().map_or(0.0, |object| object.get_ref().stiffness_n_per_mm.get());
-        self.gripper.speed_mm_s.get() * self.gripper.dead_time_ms.get() / 1e3 * stiffness / 2.0
+        [self.gripper.dead_time_ms.get() / 1e3, self.gripper.speed_mm_s.get() * stiffness / 2.0]
+    }
+
+    /// Half the width of the force sensor's hysteresis, as a part of the force.
+    pub const fn hysteresis(&self) -> f64 {
+        self.fsr.hysteresis.get()
     }
 
     pub fn trusts_line(&self) -> bool {

@@ -46,8 +46,15 @@ pub fn record<P: Plant>(
     recorder: &mut dyn Recorder,
     progress: &mut dyn FnMut(f64),
 ) -> (Summary, P) {
-    let summary = closed_loop(&mut plant, grips, recorder, progress);
+    let summary = closed_loop(&mut plant, grips, recorder, progress, &mut |own, _, _| own);
     (summary, plant)
+}
+
+/// `choose` has the last word about the drive, beside a hand without a reflex.
+pub fn run_chosen<P: Plant>(mut plant: P, choose: &mut Choose<'_>) -> P {
+    let nobody = Grips::Reflex(DetectorSet::NONE);
+    let _kept_by_the_plant = closed_loop(&mut plant, nobody, &mut (), &mut |_| {}, choose);
+    plant
 }
 
 /// The same for every plant, or the logic would be compiled once for each: 8 s in all that runs one.
@@ -56,10 +63,11 @@ fn closed_loop(
     grips: Grips,
     recorder: &mut dyn Recorder,
     progress: &mut dyn FnMut(f64),
+    choose: &mut Choose<'_>,
 ) -> Summary {
     let mut board = Stepper::new(plant, grips, recorder);
     for frame in 0..frames_in(plant.duration_s()) {
-        if !board.frame(plant, recorder) {
+        if !board.frame_with(plant, recorder, choose) {
             break;
         }
         if frame % PROGRESS_FRAMES == 0 {
@@ -68,6 +76,9 @@ fn closed_loop(
     }
     board.end()
 }
+
+/// The drive of the next frame, by the logic's own.
+pub type Choose<'a> = dyn FnMut(MotorDrive, &Fingertip, &dyn Plant) -> MotorDrive + 'a;
 
 /// The board between two frames.
 pub struct Stepper {
@@ -116,7 +127,7 @@ impl Stepper {
 
     /// Goes on by a frame. False: the board was reset.
     pub fn frame(&mut self, plant: &mut dyn Plant, recorder: &mut dyn Recorder) -> bool {
-        self.frame_with(plant, recorder, &|own, _| own)
+        self.frame_with(plant, recorder, &mut |own, _, _| own)
     }
 
     /// As [`Stepper::frame`]; `choose` has the last word about the drive.
@@ -124,7 +135,7 @@ impl Stepper {
         &mut self,
         plant: &mut dyn Plant,
         recorder: &mut dyn Recorder,
-        choose: &dyn Fn(MotorDrive, &Fingertip) -> MotorDrive,
+        choose: &mut Choose<'_>,
     ) -> bool {
         let Self { device, store, up, down, ahead, .. } = self;
         let sequence = self.frames;
@@ -155,7 +166,7 @@ impl Stepper {
         let own = device.tick(&frame);
         let fingertip = &device.fingertip;
         self.drive = match self.grips {
-            Grips::Reflex(_) => choose(own, fingertip),
+            Grips::Reflex(_) => choose(own, fingertip, plant),
             Grips::Bound => ahead.drive(own, fingertip, plant.planned()),
             Grips::Constant(target_n) => ahead.drive(own, fingertip, plant.closing_to(target_n)),
         };

@@ -11,5 +11,6 @@ pub mod colour {
     pub const PURPLE: RGBColor = RGBColor(204, 121, 167);
     pub const SKY: RGBColor = RGBColor(86, 180, 233);
     pub const GREY: RGBColor = RGBColor(150, 150, 150);
+    pub const BLACK: RGBColor = RGBColor(0, 0, 0);
     pub const YELLOW: RGBColor = RGBColor(240, 228, 66);
 }

@@ -18,12 +18,15 @@ pub(super) const BEFORE_S: f64 = 0.050;
 /// Safety ratio: a grip up to 1.1 times the largest need within [`ABOUT_S`] counts as needed.
 const ABOUT_PART: f64 = 1.1;
 const ABOUT_S: f64 = 1.0;
+const NOTICED_N: f64 = 0.1;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Sums {
     pub added_n: f64,
     /// Those added with no slip within 50 ms, above 1.1 times the need of the next second. Null where the truth is not known.
     pub added_without_need_n: Option<f64>,
+    /// Closings that added more than 0.1 N of that.
+    pub closings_without_need: Option<u32>,
     pub relaxed_n: f64,
 }
 
@@ -145,13 +148,15 @@ fn slips(truth: &Fate, t_s: f64) -> bool {
 
 impl Added {
     pub fn sums(&self, truth: Option<&Fate>) -> Sums {
-        let mut sums = Sums { added_without_need_n: truth.map(|_| 0.0), ..Sums::default() };
+        let (added_without_need_n, closings_without_need) = (truth.map(|_| 0.0), truth.map(|_| 0));
+        let mut sums = Sums { added_without_need_n, closings_without_need, ..Sums::default() };
         for stretch in self.stretches.iter().chain(&self.open) {
             match truth {
                 Some(truth) if stretch.closes => {
                     let [gained_n, without_n] = truth.grips.gained(stretch, truth);
                     sums.added_n += gained_n;
                     *sums.added_without_need_n.get_or_insert_default() += without_n;
+                    *sums.closings_without_need.get_or_insert_default() += u32::from(without_n > NOTICED_N);
                 }
                 Some(truth) => sums.relaxed_n += truth.grips.lost(stretch),
                 None if stretch.closes => sums.added_n += stretch.of_sensor(),

@@ -17,6 +17,7 @@ pub struct Fate {
     pub turned_rad: f64,
     /// The greatest grip force, N. None where nothing was held.
     pub peak_grip_n: Option<f64>,
+    pub carried_s: f64,
     /// The mean grip force while the hand carried it, N. None if it never did.
     pub mean_grip_n: Option<f64>,
     pub crushed_at_s: Option<f64>,
@@ -43,6 +44,7 @@ impl Fate {
             crushed_at_s: truth.crushed_at_s,
             dent_mm: truth.dent_mm,
             broken_at_s: truth.broken_at_s,
+            carried_s: truth.carried_s,
             mean_grip_n: (truth.carried_s > 0.0).then(|| truth.carried_ns / truth.carried_s),
             peak_grip_n: (truth.peak_grip_n > 0.0).then_some(truth.peak_grip_n),
             needed_force_n: held.then_some(truth.needed_grip_n),

@@ -7,7 +7,7 @@ use tenax_scene::bound::Plan;
 use tenax_scene::{SceneFile, World};
 
 use super::witness::Drawn;
-use crate::board::simulated::{self, Grips, frames_in, seconds_of};
+use crate::board::simulated::{self, Choose, Grips, frames_in, seconds_of};
 use crate::report::bound::{Control, SAME_MM};
 use crate::report::fate::Fate;
 
@@ -17,11 +17,20 @@ pub fn gripped(file: &SceneFile, seed: u64, grips: Grips) -> Fate {
     fate(file, World::new(file, seed), grips)
 }
 
-fn fate(file: &SceneFile, world: World, grips: Grips) -> Fate {
-    let span_s = (0.0, seconds_of(frames_in(file.duration_s())));
-    let plant = Drawn::new(world, span_s, Teller::default());
-    let (_kept_by_the_plant, plant) = simulated::record(plant, grips, &mut (), &mut |_| {});
+/// In the grip of somebody else, beside a hand without a reflex.
+pub fn chosen(file: &SceneFile, seed: u64, choose: &mut Choose<'_>) -> Fate {
+    let plant = simulated::run_chosen(drawn(file, World::new(file, seed)), choose);
     Fate::of(plant.world.truth(), file)
+}
+
+fn fate(file: &SceneFile, world: World, grips: Grips) -> Fate {
+    let (_kept_by_the_plant, plant) = simulated::record(drawn(file, world), grips, &mut (), &mut |_| {});
+    Fate::of(plant.world.truth(), file)
+}
+
+fn drawn(file: &SceneFile, world: World) -> Drawn {
+    let span_s = (0.0, seconds_of(frames_in(file.duration_s())));
+    Drawn::new(world, span_s, Teller::default())
 }
 
 /// The bound of a scene beside `run`. It plans the least force from which nothing slides. Beside a run that kept the object with

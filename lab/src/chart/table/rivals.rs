@@ -112,8 +112,8 @@ pub fn rivals(linear: Logistic, paper: Logistic) -> Vec<Row> {
     vec![
         rival("vibration threshold", levels, Arc::new(|at| vec![above(at, loudness())])),
         rival("Ft/Fn threshold", ratios, Arc::new(|at| vec![above(at, ratio())])),
-        rival("logistic, 112 features", nats(), learned(linear)),
-        rival("logistic, the paper's 76", nats(), learned(paper)),
+        rival("linear on the mlp's 112 features", nats(), learned(linear)),
+        rival("linear on the paper's 76", nats(), learned(paper)),
     ]
 }
 

@@ -90,18 +90,7 @@ impl Scored {
     /// False alarms an hour of this kind, as Poisson counts. None if nothing of it was heard.
     pub fn false_per_hour(&self, kind: Kind) -> Option<Between> {
         let (count, hours) = self.alarms[kind as usize];
-        (hours > 0.0).then(|| {
-            let n = count as f64;
-            let quantile = |freedom: f64, part: f64| {
-                if freedom == 0.0 {
-                    0.0
-                } else {
-                    ChiSquared::new(freedom).map_or(0.0, |chi| chi.inverse_cdf(part))
-                }
-            };
-            let [low, high] = [quantile(2.0 * n, TAIL), quantile(2.0 * n + 2.0, 1.0 - TAIL)];
-            [n, low / 2.0, high / 2.0].map(|count| count / hours)
-        })
+        (hours > 0.0).then(|| a_unit(count as f64, hours))
     }
 
     pub fn hours(&self, kind: Kind) -> f64 {
@@ -112,6 +101,16 @@ impl Scored {
     pub fn latency_ms(&self, part: f64) -> Option<f64> {
         not_exceeded(self.slips.iter().filter_map(|slip| Some(1e3 * slip.1?)), part)
     }
+}
+
+/// A Poisson count of so many units, for each.
+pub fn a_unit(count: f64, units: f64) -> Between {
+    let quantile = |freedom: f64, part: f64| match freedom {
+        0.0 => 0.0,
+        _ => ChiSquared::new(freedom).map_or(0.0, |chi| chi.inverse_cdf(part)),
+    };
+    let [low, high] = [quantile(2.0 * count, TAIL), quantile(2.0 * count + 2.0, 1.0 - TAIL)];
+    [count, low / 2.0, high / 2.0].map(|count| count / units)
 }
 
 /// Wilson's interval at 95 %.

@@ -164,17 +164,20 @@ fn labels(axis: &Axis) -> usize {
 }
 
 fn name(axis: &Axis, place: f64) -> String {
-    if axis.log { power(place) } else { format!("{}", (place * 1e6).round() / 1e6 + 0.0) }
+    let places = axis.places();
+    match axis.log {
+        // Between powers of ten where there is room for it.
+        true if (place - place.round()).abs() > 1e-6 && places.end - places.start > 2.0 => String::new(),
+        true => number(format!("{:.1e}", 10f64.powf(place)).parse().unwrap_or_default()),
+        false => number((place * 1e6).round() / 1e6 + 0.0),
+    }
 }
 
-/// 10 to the power of `place`, where that is whole.
-fn power(place: f64) -> String {
-    let whole = place.round();
-    match whole as i32 {
-        _ if (place - whole).abs() > 1e-6 => String::new(),
-        0 => "1".to_owned(),
-        1 => "10".to_owned(),
-        n => format!("1e{n}"),
+fn number(value: f64) -> String {
+    if value != 0.0 && !(1e-3..1e5).contains(&value.abs()) {
+        format!("{value:e}")
+    } else {
+        format!("{value}")
     }
 }
 
