@@ -2,7 +2,7 @@
 //! A proven wish, the button or an empty hand clears it. The wearer's closing, and a rise of the other electrode
 //! as the wish begins, pay for unproven openings. Time pays for nothing.
 
-use tenax_hal_shim::motor::MotorDrive;
+use tenax_hal_shim::motor::{Duty, MotorDrive};
 
 use crate::emg::Verdict;
 use crate::emg::decide::Wish;
@@ -19,6 +19,8 @@ const REFUSED_FRAMES: u32 = 1_000;
 pub struct Account {
     /// Net travel of unproven openings, per mille of duty times frames.
     pub(crate) opened: u32,
+    /// That of before this opening.
+    owed: u32,
     /// Frames of unproven closing.
     pub(crate) closed: u32,
     /// Frames of closing by others than the wearer while the force is unknown or an electrode is lost.
@@ -31,8 +33,9 @@ pub struct Account {
 }
 
 impl Account {
-    pub const fn may_open(&self) -> bool {
-        self.opened < OPENS_AT_MOST
+    /// A frame's opening at this duty is still within the account.
+    pub fn may_open(&self, duty: Duty) -> bool {
+        self.opened + u32::from(duty.as_per_mille()) <= OPENS_AT_MOST
     }
 
     pub const fn may_close(&self) -> bool {
@@ -42,8 +45,11 @@ impl Account {
     /// A frame's wish of the gate, and whether it drove the motor. Gives the wish whose refusal is to be reported.
     pub fn step(&mut self, gate: &Gate, asked: MotorDrive, driven: bool) -> Wish {
         let Verdict { wish, heard, .. } = *gate.verdict();
-        if heard && !self.heard {
-            self.opened = 0;
+        if wish != Wish::Open {
+            self.owed = self.opened;
+        } else if heard && !self.heard {
+            // What this wish has opened already stays in the account: the rise may be the fault's own.
+            self.opened = self.opened.saturating_sub(self.owed);
         }
         self.heard = heard;
         if gate.is_trusted() || gate.is_releasing() {

@@ -107,11 +107,11 @@ impl Gate {
 
     /// Faster for a stronger contraction; an unproven opening at the slowest duty.
     pub fn wish(&self, config: &GateConfig, account: &Account) -> MotorDrive {
-        let trusted = self.is_trusted();
+        let (trusted, slowest) = (self.is_trusted(), duty(config, 0));
         match self.verdict.wish {
             Wish::Open if trusted => MotorDrive::Open(duty(config, self.verdict.strength_permille)),
-            _ if self.release > 0 => MotorDrive::Open(duty(config, 0)),
-            Wish::Open if account.may_open() => MotorDrive::Open(duty(config, 0)),
+            _ if self.release > 0 => MotorDrive::Open(slowest),
+            Wish::Open if account.may_open(slowest) => MotorDrive::Open(slowest),
             Wish::Close if trusted || account.may_close() => {
                 MotorDrive::Close(duty(config, self.verdict.strength_permille))
             }

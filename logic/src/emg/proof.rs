@@ -153,7 +153,9 @@ impl Proof {
                 (None, _) => self.heard || trust.has_turned_twice(),
             };
         }
-        if self.over > OVER_FRAMES || !(over || trust.is_sound() && raised) {
+        // What turned after a steady rise may be the other electrode's signal: it has to be heard again.
+        let straight = self.proven && wish == Wish::Open && trust.is_straight();
+        if straight || self.over > OVER_FRAMES || !(over || trust.is_sound() && raised) {
             self.proven = false;
             if !(raised && trust.returns()) {
                 // The contraction is over, or no muscle's: a later one has to be heard again.
