@@ -163,7 +163,8 @@ impl Hand {
 #[test]
 fn time_pays_for_nothing_and_a_refused_wish_is_told_when_it_ends() {
     let (most, rest) = (OPENS_AT_MOST as i32, Verdict { wish: Wish::Rest, active: false, ..UNPROVEN });
-    for (wish, all) in [(Wish::Open, most - 299..most + 1), (Wish::Close, -1_000 * CLOSES_AT_MOST as i32..0)] {
+    for (wish, all) in [(Wish::Open, most - 299..most + 1), (Wish::Close, -1_000 * CLOSES_AT_MOST as i32..0)]
+    {
         let mut hand = Hand::default();
         let first = hand.moves(Verdict { wish, ..UNPROVEN }, 600, false);
         assert!(all.contains(&first), "{first}");
@@ -179,12 +180,12 @@ fn time_pays_for_nothing_and_a_refused_wish_is_told_when_it_ends() {
 
 #[test]
 fn closing_proof_a_rise_of_the_other_electrode_and_an_empty_hand_pay_for_opening() {
-    let closes = Verdict { wish: Wish::Close, ..UNPROVEN };
+    let [closes, rests] = [Wish::Close, Wish::Rest].map(|wish| Verdict { wish, ..UNPROVEN });
     for (pays, empty, frames) in [
         (closes, false, 20),
         (Verdict { proven: true, ..closes }, false, 1),
         (Verdict { proven: true, ..UNPROVEN }, false, 1),
-        (Verdict { wish: Wish::Rest, ..UNPROVEN }, true, 1),
+        (rests, true, 1),
     ] {
         let mut hand = Hand::default();
         let first = hand.moves(UNPROVEN, 600, false);
@@ -195,14 +196,9 @@ fn closing_proof_a_rise_of_the_other_electrode_and_an_empty_hand_pay_for_opening
     let first = hand.moves(UNPROVEN, 600, false);
     hand.moves(closes, 4, false);
     assert!((1..first / 2).contains(&hand.moves(UNPROVEN, 600, false)), "as much as was closed");
-    let heard = Verdict { heard: true, ..UNPROVEN };
     // A rise pays once a contraction, and not for what this one has opened already.
-    for (early, mut hand) in [(0, hand), (20, Hand::default())] {
-        for _ in 0..2 {
-            hand.moves(Verdict { wish: Wish::Rest, ..UNPROVEN }, 1, false);
-            let opens = [(UNPROVEN, early), (heard, 9_000), (UNPROVEN, 600)];
-            let all: i32 = opens.map(|(verdict, frames)| hand.moves(verdict, frames, false)).iter().sum();
-            assert!(all == first, "{early}: {all}");
-        }
+    for (soon, mut hand) in [(0, hand), (20, Hand::default())] {
+        let all = [(rests, 1), (UNPROVEN, soon), (Verdict { heard: true, ..UNPROVEN }, 900), (UNPROVEN, 600)];
+        assert_eq!(all.map(|(says, frames)| hand.moves(says, frames, false)).iter().sum::<i32>(), first);
     }
 }

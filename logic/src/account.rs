@@ -20,7 +20,7 @@ pub struct Account {
     /// Net travel of unproven openings, per mille of duty times frames.
     pub(crate) opened: u32,
     /// That of before this opening.
-    owed: u32,
+    pub(crate) owed: u32,
     /// Frames of unproven closing.
     pub(crate) closed: u32,
     /// Frames of closing by others than the wearer while the force is unknown or an electrode is lost.

@@ -64,12 +64,16 @@ impl Channel {
         if self.over { Some(const { level_of(OVER_UV) }) } else { self.trust.last_uv().map(level_of) }
     }
 
-    fn end(&mut self) -> Electrode {
-        let uv = (self.count > 0).then(|| self.sum_uv / self.count.max(1));
+    /// Mean of the slow frame, uV.
+    fn mean_uv(&self) -> Option<i32> {
+        (self.count > 0).then(|| self.sum_uv / self.count.max(1))
+    }
+
+    fn end(&mut self, uv: Option<i32>, other_uv: i32) -> Electrode {
         let over = self.over;
         (self.sum_uv, self.count, self.over) = (0, 0, false);
         if let Some(uv) = uv {
-            self.trust.judge(self.active_uv[0], uv);
+            self.trust.judge(self.active_uv[0], uv, other_uv);
         }
         let trust = &self.trust;
         Electrode {
@@ -184,8 +188,11 @@ impl Emg {
     #[inline(never)]
     fn decide(&mut self) {
         let levels = self.channels.each_ref().map(Channel::level);
+        let uv = self.channels.each_ref().map(Channel::mean_uv);
         let [flexor, extensor] = &mut self.channels;
-        self.electrodes = [flexor.end(), extensor.end()];
+        let change_uv = |channel: &Channel, uv: Option<i32>| uv.map_or(0, |uv| channel.trust.change_uv(uv));
+        let changes_uv = [change_uv(flexor, uv[0]), change_uv(extensor, uv[1])];
+        self.electrodes = [flexor.end(uv[0], changes_uv[1]), extensor.end(uv[1], changes_uv[0])];
         let wish = self.decide.take(&self.electrodes);
         let mover = self.decide.mover();
         let raised = self.channels.each_ref().map(|channel| channel.raised);

@@ -45,16 +45,6 @@ fn a_contraction_moves_the_hand_its_way_and_rest_does_not() {
 }
 
 #[test]
-fn opening_follows_its_envelope_within_25_ms() {
-    let mut emg = wearer();
-    run(&mut emg, 1.0, rest);
-    let opening = run(&mut emg, 1.0, |t| [alive(150.0, t), (60.0 + 20_000.0 * t).min(alive(2_000.0, t))]);
-    let supported = opening.iter().position(|_| true).unwrap() + ((1_680.0 - 60.0) / 20_000.0 * HZ) as usize;
-    let opened = opening.iter().position(|v| v.wish == Wish::Open).unwrap();
-    assert!(opened <= supported + (0.025 * HZ) as usize, "{opened} against {supported}");
-}
-
-#[test]
 fn a_fist_is_activity_and_never_opens() {
     // Recorded fists have the extensor at up to 2.2 times the flexor; here up to 2.7, above a held extension.
     for [flexor, extensor] in [[500.0, 300.0], [500.0, 600.0], [500.0, 1_300.0], [700.0, 1_800.0]] {
@@ -126,17 +116,6 @@ fn steady_hum_and_tone_are_subtracted() {
     run(&mut emg, 35.0, |t| [rest(t)[0], alive(150.0, t)]);
     let opening = run(&mut emg, 2.0, |t| [alive(150.0, t), 150.0 + alive(1_500.0, t)]);
     assert!(part(&opening, Wish::Open) > 0.9, "{}", part(&opening, Wish::Open));
-}
-
-#[test]
-fn a_lost_sensor_is_no_wish_and_not_known() {
-    let mut emg = wearer();
-    run(&mut emg, 1.0, rest);
-    for _ in 0..24 {
-        let verdict = emg.take([Some(60_000), None]);
-        assert!(!verdict.known && verdict.wish == Wish::Rest);
-    }
-    assert_eq!(emg.quality(1), Quality::LeadOff);
 }
 
 #[test]

@@ -44,6 +44,8 @@ const FIRST_PROOF_FRAMES: u16 = 20;
 /// Least curvature of a proof, as a part of the level, and slow frames between two proofs: 0.15 s.
 const PROOF_PART: i32 = 12;
 const PROOF_APART: u16 = 12;
+/// Part of the other electrode's change within 0.1 s that may be this one's: a turn within it is its signal.
+const ECHO_PART: i32 = 8;
 /// Slow frames without a proof after which a contraction has to prove itself again: 1 s.
 const PROOF_LASTS: u16 = 80;
 
@@ -114,12 +116,19 @@ impl Trust {
         (self.missing <= BRIDGED_READINGS).then_some(self.last_uv)
     }
 
-    pub fn judge(&mut self, active_uv: i32, uv: i32) {
+    /// Change within 0.1 s, uV, before the frame is judged.
+    pub fn change_uv(&self, uv: i32) -> i32 {
+        (uv - self.past_uv[usize::from(self.place) % (2 * LAG)]).abs()
+    }
+
+    /// `other_uv`: the other electrode's change within 0.1 s.
+    pub fn judge(&mut self, active_uv: i32, uv: i32, other_uv: i32) {
         // A full window waits for its spectrum.
         let _full = self.window.push((self.last_uv / UNIT_UV).clamp(-32_768, 32_767) as i16);
         let place = usize::from(self.place) % (2 * LAG);
         let (middle, far) = (self.past_uv[(place + LAG) % (2 * LAG)], self.past_uv[place]);
         let curve_uv = (uv - 2 * middle + far).abs();
+        let echo = (uv - far).abs() * ECHO_PART <= other_uv;
         self.past_uv[place] = uv;
         self.place = place as u8 + 1;
 
@@ -131,7 +140,7 @@ impl Trust {
         let turned = self.climb(uv);
         let curves = curve_uv * PROOF_PART > uv.max(1) && !is_top && uv.max(middle).max(far) < TOP_UV;
         // A fall by half in 50 ms is an electrode that has come off, or back on.
-        self.prove((turned || curves) && uv >= middle / 2);
+        self.prove((turned || curves) && !echo && uv >= middle / 2);
 
         let constant = if self.mains { Quality::Hum } else { Quality::Flat };
         let quality = if self.at_top >= TOP_FRAMES {

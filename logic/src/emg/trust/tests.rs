@@ -16,7 +16,7 @@ fn go_on(watch: &mut Trust, from_s: f64, seconds: f64, of: impl Fn(f64) -> f64) 
         let readings = AT_S.map(|at| of(from_s + f64::from(slow) / 80.0 + at));
         let numbers = readings.map(|mv| watch.take((mv < 2_950.0).then_some((mv * 1e3) as i32)));
         if let [Some(first), Some(second), Some(third)] = numbers {
-            watch.judge(ACTIVE_UV, (first + second + third) / 3);
+            watch.judge(ACTIVE_UV, (first + second + third) / 3, 0);
         }
         if let Some(window) = watch.window().copied() {
             watch.hear(mains_of(&window));
@@ -64,27 +64,22 @@ fn a_jump_from_a_fault_to_another_proves_nothing() {
 }
 
 #[test]
+fn a_turn_within_the_other_electrodes_signal_proves_nothing() {
+    for (other_uv, proves) in [(2_000_000, false), (200_000, true)] {
+        let mut watch = Trust::default();
+        for n in 0..60 {
+            let uv = if n < 40 { 1_000_000 } else { 950_000 };
+            watch.judge(ACTIVE_UV, uv, if (40..48).contains(&n) { other_uv } else { 0 });
+        }
+        assert_eq!(watch.has_turned(), proves);
+    }
+}
+
+#[test]
 fn what_is_proven_must_prove_itself_again_once_it_no_longer_curves() {
     let mut watch = watch(1.0, muscle);
     assert!(watch.has_turned_twice());
     let level = muscle(1.0);
     go_on(&mut watch, 1.0, 1.2, |t| level + 1_000.0 * (t - 1.0));
     assert!(!watch.has_turned_twice(), "a straight line is no muscle");
-}
-
-#[test]
-fn a_lost_sensor_comes_back_once_it_has_been_good_for_a_second() {
-    let mut watch = watch(1.2, |_| 400.0);
-    go_on(&mut watch, 1.2, 0.95, |_| 50.0);
-    assert_eq!(watch.quality(), Quality::Flat);
-    go_on(&mut watch, 2.0, 0.2, |_| 50.0);
-    assert_eq!(watch.quality(), Quality::Good);
-}
-
-#[test]
-fn only_a_still_envelope_that_is_doubted_hums_and_only_where_it_stands() {
-    let still = watch(2.0, |_| 400.0);
-    assert!(still.hums_at(400_000) && still.hums_at(402_000));
-    assert!(!still.hums_at(800_000) && !still.hums_at(100_000));
-    assert!(!watch(2.0, muscle).hums_at(400_000));
 }
