@@ -203,17 +203,18 @@ impl World {
         self.watch.vibration = 0;
         for _ in 0..frames.min(self.until - self.frames) {
             let reflex = self.reflex;
-            let goes_on = self.board.frame_with(&mut self.plant, &mut self.watch, &mut |own, fingertip, _| {
-                let source = fingertip.last_tick().unwrap_or_default().source;
-                let is_reflex = reflex && source == DriveSource::Reflex;
-                match own {
-                    // The wearer comes first.
-                    _ if fingertip.wearer_active() || asked == MotorDrive::Coast => own,
-                    MotorDrive::Coast => asked,
-                    _ if is_reflex => drive_of((signed(own) + signed(asked)).clamp(-1.0, 1.0)),
-                    _ => own,
-                }
-            });
+            let goes_on =
+                self.board.frame_with(&mut self.plant, &mut self.watch, &mut |own, fingertip, _| {
+                    let source = fingertip.last_tick().unwrap_or_default().source;
+                    let is_reflex = reflex && source == DriveSource::Reflex;
+                    match own {
+                        // The wearer comes first.
+                        _ if fingertip.wearer_active() || asked == MotorDrive::Coast => own,
+                        MotorDrive::Coast => asked,
+                        _ if is_reflex => drive_of((signed(own) + signed(asked)).clamp(-1.0, 1.0)),
+                        _ => own,
+                    }
+                });
             self.frames += 1;
             if !goes_on {
                 self.until = self.frames;
