@@ -35,8 +35,9 @@ impl Progress {
         self.say(|elapsed| match virtual_s.is_infinite() {
             true => format!("{}: searching the least force that holds", self.what),
             false => {
-                let left_s = elapsed.as_secs_f64() * (1.0 - part) / part.max(1e-6);
-                format!("{} {:.0} %, {left_s:.0} s left", self.what, 100.0 * part)
+                let left_s = elapsed.as_secs_f64() * (1.0 - part) / part;
+                let left = if part < 0.02 { String::new() } else { format!(", {left_s:.0} s left") };
+                format!("{} {:.0} %{left}", self.what, 100.0 * part)
             }
         });
     }
