@@ -1,5 +1,5 @@
 use proptest::prelude::*;
-use tenax_logic::array::{FEATURES, HIDDEN, Layer, Mlp};
+use tenax_logic::array::{Aligned, FEATURES, HIDDEN, Layer, Mlp};
 
 const H1: usize = HIDDEN[0];
 const H2: usize = HIDDEN[1];
@@ -47,10 +47,10 @@ proptest! {
     ) {
         let network = Mlp { first: layer(&first), second: layer(&second), last: layer(&last) };
         for frame in &frames {
-            let mut seen = [0; H1];
-            network.first.activate(frame, 0..H1, &mut seen);
-            prop_assert_eq!(seen, activations(sums(&first, frame), first.2));
-            let [logit] = sums(&last, &activations(sums(&second, &seen), second.2));
+            let mut seen = Aligned([0; H1]);
+            network.first.activate(&Aligned(*frame), 0..H1, &mut seen.0);
+            prop_assert_eq!(seen.0, activations(sums(&first, frame), first.2));
+            let [logit] = sums(&last, &activations(sums(&second, &seen.0), second.2));
             prop_assert_eq!(i64::from(network.judge(&seen)), logit);
         }
     }

@@ -8,7 +8,7 @@ use tenax_hal_shim::schedule::ARRAY_SHARES;
 
 use super::network::Mlp;
 use super::preprocess::{Preprocessor, PreprocessorConfig};
-use super::{ARRAY_READ, HIDDEN, Reading, ShippedDetector};
+use super::{ARRAY_READ, Aligned, HIDDEN, Reading, ShippedDetector};
 use crate::detectors::{Description, Detector, Said, Sensed};
 
 /// Shares of a slow frame's work, one a tick. 0: covariance, spectrum. 1: features of the spectrum, short
@@ -53,7 +53,7 @@ pub struct ArrayDetector<'m> {
     preprocessor: Preprocessor,
     unjudged: u16,
     felt: bool,
-    seen: [i16; H1],
+    seen: Aligned<[i16; H1]>,
     logit: Option<i32>,
     verdict: ArrayVerdict,
 }
@@ -65,7 +65,7 @@ impl<'m> ArrayDetector<'m> {
             preprocessor: Preprocessor::new(model.preprocessor),
             unjudged: u16::MAX,
             felt: false,
-            seen: [0; H1],
+            seen: Aligned([0; H1]),
             logit: None,
             verdict: ArrayVerdict::NONE,
         }
@@ -98,7 +98,7 @@ impl<'m> ArrayDetector<'m> {
 
     fn see(&mut self, units: Range<usize>) {
         if self.felt {
-            self.model.network.first.activate(self.preprocessor.features(), units, &mut self.seen);
+            self.model.network.first.activate(self.preprocessor.features(), units, &mut self.seen.0);
         }
     }
 

@@ -25,6 +25,7 @@ use tenax_hal_shim::schedule::{Job, slot_of};
 pub use detector::{ArrayDetector, ArrayVerdict, Judgement, Model};
 pub use network::{Layer, Mlp, TooLarge};
 pub use preprocess::{Features, Preprocessor, PreprocessorConfig};
+pub use tenax_smlad::Aligned;
 
 pub const ARRAY_READ: u8 = slot_of(Job::ArrayBegins);
 pub const MLP_DECIDES: u8 = slot_of(Job::MlpDecides);

@@ -3,9 +3,9 @@
 
 use core::ops::Range;
 
-use tenax_smlad::{Aligned, ROWS, dot, dot_rows};
+use tenax_smlad::{ROWS, dot, dot_rows};
 
-use super::{FEATURES, HIDDEN};
+use super::{Aligned, FEATURES, HIDDEN};
 
 pub const ACTIVATION_MAX: i16 = i16::MAX;
 const INPUT_SIZE: u32 = 1 << 15;
@@ -53,13 +53,12 @@ impl<const I: usize, const O: usize> Layer<I, O> {
 
     /// Writes the activations of a range of outputs to their places. Not inlined: its unrolled products are long.
     #[inline(never)]
-    pub fn activate(&self, inputs: &[i16; I], outputs: Range<usize>, activations: &mut [i16; O]) {
+    pub fn activate(&self, inputs: &Aligned<[i16; I]>, outputs: Range<usize>, activations: &mut [i16; O]) {
         let (Some(rows), Some(bias), Some(activations)) =
             (self.weights.get(outputs.clone()), self.bias.get(outputs.clone()), activations.get_mut(outputs))
         else {
             return;
         };
-        let inputs = &Aligned(*inputs);
         let (blocks, rest) = rows.as_chunks::<ROWS>();
         let (biases, rest_biases) = bias.as_chunks::<ROWS>();
         let (slots, rest_slots) = activations.as_chunks_mut::<ROWS>();
@@ -84,7 +83,7 @@ pub struct Mlp {
 }
 
 impl Mlp {
-    pub fn judge(&self, seen: &[i16; HIDDEN[0]]) -> i32 {
+    pub fn judge(&self, seen: &Aligned<[i16; HIDDEN[0]]>) -> i32 {
         let mut hidden = [0; HIDDEN[1]];
         self.second.activate(seen, 0..HIDDEN[1], &mut hidden);
         let [logit] = self.last.sums(&hidden);

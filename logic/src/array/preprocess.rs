@@ -5,7 +5,7 @@ use super::logarithm::Knee;
 use super::past::{LAG_MAX, Past};
 use super::spectrum::SlidingSpectrum;
 use super::structure::{self, Structure, WINDOWS};
-use super::{COVARIANCE_WINDOW, COVARIANCES, FEATURES, PAPER_FEATURES, Reading, SPECTRUM_WINDOW};
+use super::{Aligned, COVARIANCE_WINDOW, COVARIANCES, FEATURES, PAPER_FEATURES, Reading, SPECTRUM_WINDOW};
 
 /// 55 covariances, row by row of the upper triangle, then 21 spectral bins, then 36 sums of structure functions, lag by lag, the newest
 /// window first, one of them as its quiet level. Each is a logarithm, Q9: `sign(c) log2(1 + |c| / knee)` of a covariance (within +-2^14),
@@ -45,7 +45,7 @@ pub struct Preprocessor {
     spectrum: SlidingSpectrum,
     structure: Structure,
     missing: usize,
-    features: Features,
+    features: Aligned<Features>,
 }
 
 impl Default for Preprocessor {
@@ -70,7 +70,7 @@ impl Preprocessor {
             spectrum: SlidingSpectrum::default(),
             structure: Structure::default(),
             missing: (COVARIANCE_WINDOW + lag).max(SPECTRUM_WINDOW).max(structure::READY_AFTER),
-            features: [0; FEATURES],
+            features: Aligned([0; FEATURES]),
         }
     }
 
@@ -97,7 +97,7 @@ impl Preprocessor {
         self.missing = self.missing.saturating_sub(1);
         self.ready = self.missing == 0 && arrival.dead <= usize::from(self.config.dead_max);
         if self.ready {
-            for (feature, &entry) in self.features.iter_mut().zip(self.covariance.entries()) {
+            for (feature, &entry) in self.features.0.iter_mut().zip(self.covariance.entries()) {
                 *feature = self.covariance_knee.signed(entry);
             }
         }
@@ -106,7 +106,7 @@ impl Preprocessor {
     pub fn add_spectrum(&mut self) {
         self.structure.push_short(&self.past);
         if self.ready {
-            for (feature, power) in self.features[COVARIANCES..].iter_mut().zip(self.spectrum.powers()) {
+            for (feature, power) in self.features.0[COVARIANCES..].iter_mut().zip(self.spectrum.powers()) {
                 *feature = self.spectrum_knee.of(power);
             }
         }
@@ -117,11 +117,11 @@ impl Preprocessor {
         if !self.ready {
             return None;
         }
-        self.structure.compress(&self.structure_knees, &mut self.features[PAPER_FEATURES..]);
-        Some(&self.features)
+        self.structure.compress(&self.structure_knees, &mut self.features.0[PAPER_FEATURES..]);
+        Some(&self.features.0)
     }
 
-    pub fn features(&self) -> &Features {
+    pub fn features(&self) -> &Aligned<Features> {
         &self.features
     }
 
