@@ -44,50 +44,31 @@ fn kept(run: &Run) -> Vec<Kept> {
     run.saved.iter().map(|&(_, kept)| kept).collect()
 }
 
+/// One at each place; `TENAX_CUTS=30` is the bar, and `host-tests/tests/store/cuts.rs` draws a thousand.
 // Shows B4.
 #[test]
-fn power_lost_in_the_middle_of_a_save_leaves_the_setting_before() {
-    let plant = |duration_s| Swing::new(duration_s).sending(0.2, s2(500)).at_rest();
-    let start = || at_start(&Sectors::blank().saving(Kept::Settings, &settings(400)));
-    // A mark, a tag, a number, two settings, a checksum and a commit; host-tests/tests/store/cuts.rs cuts at each.
-    for words in [1, 3, 6] {
-        let options = Options { mishaps: vec![(0.1, Mishap::PowerFails(words))], ..start() };
-        let run = run(plant(0.5), &options);
-        assert_eq!(run.starts, [None, None], "{words} words");
-        assert_eq!((s2_at_end(&run), kept(&run)), (Some(400), vec![]), "{words} words");
-        // Half a tag does not even say what it was to be.
-        let told = if words <= 1 { vec![] } else { vec![Fault::RecordDamaged(Kept::Settings)] };
-        assert_eq!(faults(&run), told, "{words} words");
-    }
-    // The control: with power for one word more, the new one is used.
-    let mishaps = vec![(0.1, Mishap::PowerFails(7)), (0.4, Mishap::CoreHangs)];
-    let run = run(plant(0.9), &Options { mishaps, ..start() });
-    assert_eq!((run.starts.len(), s2_at_end(&run)), (2, Some(500)));
-    assert_eq!((kept(&run), faults(&run)), (vec![Kept::Settings], vec![]));
-}
-
-// Shows B4.
-#[test]
-fn thirty_cuts_while_saving_leave_each_time_the_setting_before() {
-    let read = Down::Get(SettingId::S2.number());
-    let (mut plant, mut mishaps) = (Swing::new(9.6).at_rest(), Vec::new());
-    for n in 0..31 {
+fn power_cuts_while_saving_leave_each_time_the_setting_before() {
+    let cuts: u16 = std::env::var("TENAX_CUTS").map_or(7, |count| count.parse().expect("a number"));
+    let ends_s = 0.3 * f64::from(cuts + 1);
+    let (mut plant, mut mishaps) = (Swing::new(ends_s + 0.3).at_rest(), Vec::new());
+    for n in 0..=cuts {
         let at_s = 0.2 + 0.3 * f64::from(n);
-        plant = plant.sending(at_s, s2(300 + 5 * n)).sending(at_s + 0.25, read);
-        // The last has power for long enough.
-        let words = if n < 30 { u32::from(n * 5 % 7) } else { 40 };
-        mishaps.push((at_s - 0.05, Mishap::PowerFails(words)));
+        plant = plant.sending(at_s, s2(300 + 5 * n)).sending(at_s + 0.25, Down::Get(SettingId::S2.number()));
+        // In a mark, a tag, a number, two settings, a checksum or a commit; the last has power for long enough.
+        mishaps.push((at_s - 0.05, Mishap::PowerFails(if n < cuts { u32::from(n % 7) } else { 40 })));
     }
-    mishaps.push((9.3, Mishap::ResetByPin));
+    mishaps.push((ends_s, Mishap::ResetByPin));
     let start = at_start(&Sectors::blank().saving(Kept::Settings, &settings(295)));
     let run = run(plant, &Options { mishaps, ..start });
-    assert_eq!(run.starts, [None; 32]);
+    assert_eq!(run.starts, vec![None; usize::from(cuts) + 2]);
     let answers = run.answers.iter().filter(|(of, _)| of % 2 == 1).map(|(_, answer)| answer);
     let value = |permille| Answer::Setting(Setting { id: SettingId::S2.number(), value: permille });
-    let mut expected = vec![value(295); 30];
-    expected.push(value(450));
+    let mut expected = vec![value(295); cuts.into()];
+    expected.push(value((300 + 5 * cuts).into()));
     assert!(answers.eq(&expected), "{:?}", run.answers);
-    assert_eq!((s2_at_end(&run), kept(&run)), (Some(450), vec![Kept::Settings]));
+    assert_eq!((s2_at_end(&run), kept(&run)), (Some(300 + 5 * cuts), vec![Kept::Settings]));
+    // Half a tag does not even say what it was to be; from the third cut on, each start finds what is left.
+    assert_eq!(faults(&run), vec![Fault::RecordDamaged(Kept::Settings); usize::from(cuts) - 2]);
     assert!(run.drives.iter().all(|drive| *drive == MotorDrive::Coast));
 }
 
