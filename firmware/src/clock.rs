@@ -1,6 +1,7 @@
 //! The clock tree: 100 MHz from the ST-LINK's 8 MHz, set by embassy, whose code waits without end for a crystal or a PLL that never comes
 //! (embassy-stm32 0.6.0, `rcc/f247.rs`). So both are tried here first, each wait with an end; what is ready then is ready for embassy,
 //! and the watchdog, which runs before, ends what is not.
+//! embassy enables each peripheral's clock, too, and waits by a DSB (ES0287, delay after an RCC peripheral clock enabling).
 //! Runs at the start, before any interrupt is on. Owns RCC. Never waits without an end.
 
 use cortex_m::asm::delay;

@@ -16,6 +16,7 @@ use tenax_logic::restart::Mark;
 
 use crate::deadline::SCAN_WAKER;
 use crate::last_words::give_up;
+use crate::timing::STREAM_LOOKS;
 
 const HALF: usize = PAIRS * SCANS_PER_FRAME;
 pub const RING_LEN: usize = 2 * HALF;
@@ -94,7 +95,9 @@ fn stop() {
     let registers = pac::DMA2.st(STREAM);
     registers.cr().write(|w| w.set_en(false));
     // A single transfer is all that it can be in the middle of.
-    while registers.cr().read().en() {}
+    if (0..STREAM_LOOKS).all(|_| registers.cr().read().en()) {
+        give_up(Mark::Panicked, "DMA does not stop");
+    }
     clear(pac::DMA2.isr(0).read());
     fence(Ordering::SeqCst);
 }

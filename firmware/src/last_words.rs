@@ -23,7 +23,7 @@ static mut MARK_AND_RESTARTS: MaybeUninit<[u32; 2]> = MaybeUninit::uninit();
 const MARK: usize = 0;
 const RESTARTS: usize = 1;
 
-/// The cause of this start. Called once, first: it clears flags and mark.
+/// The cause of this start, from RCC: embassy-stm32 0.6.0 tells none. Called once, first: it clears flags and mark.
 pub fn start() -> Start {
     let csr = pac::RCC.csr().read();
     pac::RCC.csr().modify(|w| w.set_rmvf(true));

@@ -4,7 +4,7 @@
 //! (RM0383, section 5.2.3) says that the supply falls below 2.93 V: the bridge goes off and the chip is reset while code still
 //! runs as it should. Level 7 would be 3.03 V falling and 3.14 V rising: a dip of 0.25 V that harms nothing would let go of the
 //! motor, and a rail of 3.1 V would never start. The brown-out reset at level 3 holds the chip from 2.83 V on.
-//! Its handler is above all (0). Owns PWR and EXTI's line 16. Only reads the option bytes.
+//! Its handler is above all (0). Owns PWR and EXTI's line 16. Only reads the option bytes. embassy-stm32 0.6.0 has a driver of none of them.
 
 use cortex_m::asm::delay;
 use embassy_stm32::interrupt;

@@ -32,6 +32,9 @@ const _: () = assert!(STEP_US >= 86);
 /// A frame that is this late is not waited for any more: the switches have begun to show the following one.
 pub const PATIENCE_US: u32 = SCAN_US;
 
+/// Looks at a stream that was stopped, of two cycles or more: a transfer takes some ten (AN4031).
+pub const STREAM_LOOKS: u32 = 100;
+
 /// Programming a word stalls the core for so long at most (DS10314, flash memory programming).
 const WORD_US: u32 = 100;
 /// A word begins at most so long after a tick's end; the tick itself ends within a scan.

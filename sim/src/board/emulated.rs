@@ -71,6 +71,8 @@ pub enum Mishap {
     /// So many bytes of a million come down the line with a framing error.
     LineErrs(u32),
     CoreHangs,
+    /// The converter's DMA stream does not stop when it is told to next.
+    DmaSticks,
     /// The converter's DMA stream is sent where nothing is: its driver panics.
     DmaFails,
     /// The power goes for an instant while the flash programs the word after the next `words`.

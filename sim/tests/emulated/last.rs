@@ -98,6 +98,15 @@ fn a_fault_of_the_core_says_where_it_was_and_what_the_core_says_of_it() {
     );
 }
 
+// Shows B3.
+#[test]
+fn a_stream_that_does_not_stop_is_a_panic_that_says_so() {
+    let mishaps = vec![(0.3, Mishap::DmaStalls), (0.3, Mishap::DmaSticks)];
+    let run = run(asking(Swing::new(0.8), 0.6, 1).at_rest(), &Options { mishaps, ..Options::default() });
+    assert_eq!(run.starts, [None, Some(Fault::PanicReset)]);
+    assert_eq!(pieces(&run)[0].why, b"DMA does not stop"[..]);
+}
+
 // Shows B2.
 #[test]
 fn a_brown_out_is_told_and_keeps_what_was_said() {

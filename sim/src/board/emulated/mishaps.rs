@@ -41,6 +41,8 @@ pub struct Mishaps {
     lent: Option<u64>,
     /// Bits of RCC's control that do nothing: [`HSEON`], or [`PLLON`] on the crystal.
     dead_clocks: u64,
+    /// The converter's stream goes on when it is stopped next.
+    stream_sticks: bool,
 }
 
 impl Mishaps {
@@ -48,13 +50,18 @@ impl Mishaps {
     pub fn new(mishaps: &[(f64, Mishap)]) -> Self {
         let scan = |at_s: f64| (at_s * f64::from(SCAN_HZ)) as usize;
         let due = mishaps.iter().map(|(at_s, mishap)| (scan(*at_s), mishap.clone())).collect();
-        Self { due, lent: None, dead_clocks: 0 }
+        Self { due, lent: None, dead_clocks: 0, stream_sticks: false }
     }
 
     /// The core made an access. `rigless` finds a crystal's empty pin ready after its start-up time, at 0 Hz: it never gets so far.
     pub fn accessed(&mut self, access: &Access, session: &mut Session<Nucleo>) {
-        if self.dead_clocks != 0 && access.kind == AccessKind::Write && access.address == RCC_CR {
-            let (board, now) = (session.board_mut(), access.virtual_time);
+        let writes = |address| access.kind == AccessKind::Write && access.address == address;
+        let (board, now) = (session.board_mut(), access.virtual_time);
+        if writes(DMA2_S0CR) && std::mem::take(&mut self.stream_sticks) {
+            let control = board.peek(now, DMA2_S0CR);
+            board.poke(now, DMA2_S0CR, control | S0CR_EN);
+        }
+        if self.dead_clocks != 0 && writes(RCC_CR) {
             let on_crystal = board.peek(now, RCC_PLLCFGR) & PLLSRC_HSE != 0;
             let dead = self.dead_clocks & if on_crystal { HSEON | PLLON } else { HSEON };
             let control = board.peek(now, RCC_CR);
@@ -106,6 +113,7 @@ impl Mishaps {
                     let control = board.peek(now, DMA2_S0CR);
                     board.poke(now, DMA2_S0CR, control & !S0CR_EN);
                 }
+                Mishap::DmaSticks => self.stream_sticks = true,
                 Mishap::DmaFails => {
                     let ended = board.peek(now, DMA2_LISR) & TCIF0;
                     let control = board.peek(now, DMA2_S0CR);
