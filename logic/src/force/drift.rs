@@ -227,8 +227,7 @@ impl Drift {
         let [from, to] = if self.rests == [0; 2] { [load; 2] } else { self.rests };
         let off = load - to;
         if still < STILL_FOR || (off >> Q).abs() > TOLERATED_MN + load_mn / TOLERATED_PART {
-            let drifts = if self.changes { self.rate } else { 0 };
-            self.rests = [(from + off - drifts).clamp(1, LOAD_MAX << Q), load];
+            self.rests = [(from + off - self.rate).clamp(1, LOAD_MAX << Q), load];
             return;
         }
         let change = off.clamp(-ALL_FOLLOWS_MN << Q, ALL_FOLLOWS_MN << Q);
