@@ -9,10 +9,9 @@ use tenax_host_tests::Bench;
 use tenax_logic::mode;
 
 #[test]
-fn where_slip_is_unlikely_no_sense_alone_closes_however_loud_it_is() {
+fn where_nothing_can_slip_no_sense_alone_closes_however_loud_it_is() {
     // Unless the array feels it, too: then it is the force sensor that is wrong.
-    let all =
-        [(0.2, 0.0, false), (0.48, 0.0, false), (0.6, 0.0, true), (0.2, 60.0, true), (0.48, 60.0, true)];
+    let all = [(0.2, 0.0, false), (0.48, 0.0, false), (0.2, 60.0, true), (0.48, 60.0, true)];
     for (shear_n, sliding_mv, closes) in all {
         let mut bench = Bench::holding(34);
         bench.load(4.0, shear_n);

@@ -11,10 +11,11 @@ use tenax_hal_shim::wire::{DETECTORS_MAX, Forces};
 
 use crate::array::{MLP_DECIDES, Reading, ShippedDetector};
 use crate::config::Config;
+use crate::evidence::{Clues, Evidence as Weighed, Sound};
 use crate::force::FrictionDetector;
 use crate::hebbian::HebbianDetector;
 use crate::photoelastic::{Head, PhotoelasticDetector};
-use crate::plausibility::{Disturbance, Plausibility};
+use crate::plausibility::Plausibility;
 use crate::strain::Gauges;
 use crate::vibration::Vibration;
 use crate::vibration::detector::S1;
@@ -74,10 +75,9 @@ pub trait Detector {
     fn describe(&self, config: &Self::Config) -> Description;
 }
 
-/// Readings before the array's verdict in which the films must have been loud, or half so, for it to be believed alone:
-/// it looks back on as much, 200 ms.
-const HEARD_WITHIN: u8 = 16;
 const OTHERS_GUARDED: u8 = slot_of(Job::Think) + 1;
+/// After the films' and the array's.
+pub const WEIGHED: u8 = slot_of(Job::Save) + 2;
 
 macro_rules! for_each_detector {
     ($self:ident, $config:expr, |$detector:ident, $own:ident| $body:expr) => {{
@@ -106,8 +106,9 @@ pub struct Detectors {
     pub injected: Injected,
     photoelastic: PhotoelasticDetector,
     record: Record,
-    /// An object has slid in this grasp.
-    pub has_slid: bool,
+    weighed: Weighed,
+    /// Nothing but the films' quiet sound is slip.
+    quiet: bool,
 }
 
 #[derive(Clone, Debug, Default)]
@@ -115,13 +116,10 @@ struct Record {
     slip: DetectorSet,
     incipient: DetectorSet,
     ignored: DetectorSet,
+    /// S1 is above its own threshold.
+    s1_alone: bool,
     decided_at: [u32; DetectorId::COUNT],
     guards: [Plausibility; DetectorId::COUNT],
-    disturbance: Disturbance,
-    /// The films give no reading.
-    is_deaf: bool,
-    /// Readings since the films were loud as slip, or half so.
-    silent_for: u8,
 }
 
 impl Record {
@@ -132,26 +130,21 @@ impl Record {
         self.decided_at[id as usize] = frame;
     }
 
+    /// Senses that report slip each by itself: S1 and the network hear the same films.
+    fn reports(&self) -> i32 {
+        let slip = self.slip.without(self.ignored);
+        let films = self.s1_alone || slip.contains(DetectorId::Hebbian);
+        let others =
+            [DetectorId::Photoelastic, DetectorId::Injected].into_iter().filter(|&id| slip.contains(id));
+        i32::from(films) + others.count() as i32
+    }
+
     fn guard(&mut self, id: DetectorId, sensed: &Sensed<'_>) {
         let says = self.slip.or(self.incipient).contains(id);
         let guard = &mut self.guards[id as usize];
         guard.step(sensed.unloaded, says);
         self.ignored = self.ignored.with(id, guard.is_ignored());
     }
-
-    #[inline(always)]
-    fn guard_array(&mut self, sensed: &Sensed<'_>) {
-        let id = DetectorId::Mlp;
-        self.guard(id, sensed);
-        self.disturbance.step(sensed.vibration.impact, self.slip.contains(id));
-        self.ignored = self.ignored.with(id, self.ignored.contains(id) || self.disturbance.explains_it());
-    }
-}
-
-fn by_two_senses(slip: DetectorSet) -> bool {
-    let films = slip.contains(DetectorId::S1) || slip.contains(DetectorId::Hebbian);
-    let others = [DetectorId::Mlp, DetectorId::Photoelastic, DetectorId::Injected];
-    u8::from(films) + others.into_iter().map(|id| u8::from(slip.contains(id))).sum::<u8>() >= 2
 }
 
 const fn id_of<D: Detector>(_: &D) -> DetectorId {
@@ -165,14 +158,24 @@ impl Detectors {
                 self.record.note(id_of(detector), said, sensed.frame);
             }
         });
-        self.record.silent_for = sensed.vibration.silent_for;
-        self.record.is_deaf = !sensed.vibration_known;
         // The MLP decides once a cycle, and an implausible verdict must not act for a single tick.
         match sensed.slot {
-            MLP_DECIDES => self.record.guard_array(sensed),
+            MLP_DECIDES => self.record.guard(DetectorId::Mlp, sensed),
             OTHERS_GUARDED => self.guard_others(config, sensed),
             _ => {}
         }
+        self.record.s1_alone = sensed.vibration.s1;
+        self.record.slip =
+            self.record.slip.with(DetectorId::S1, self.record.slip.contains(DetectorId::S1) | self.quiet);
+    }
+
+    /// Call it once a slow frame, in slot [`WEIGHED`]. `sound`: none if the hand itself may be what the films hear. `moves`: the
+    /// motor has been loud within 100 ms. `answers`: the reflex or a muscle moves the hand, or it settles.
+    #[inline(never)]
+    pub fn weigh(&mut self, sound: Option<Sound>, moves: bool, answers: bool) {
+        let (array, ratio_permille) = (self.mlp.millinats(), self.s2.ratio_permille());
+        self.weighed.weigh(&Clues { sound, array, ratio_permille, moves, answers });
+        self.quiet = self.weighed.slips(0) && !self.record.slip.contains(DetectorId::Mlp);
     }
 
     #[inline(never)]
@@ -186,12 +189,6 @@ impl Detectors {
         });
     }
 
-    /// S2's warning is being answered: the array's next reports may come from the closing.
-    #[inline(never)]
-    pub const fn tightened(&mut self) {
-        self.record.disturbance.begin();
-    }
-
     pub const fn slip(&self) -> DetectorSet {
         self.record.slip
     }
@@ -200,16 +197,17 @@ impl Detectors {
         self.record.incipient
     }
 
-    pub fn credible(&self) -> DetectorSet {
-        let Record { slip, incipient, ignored, .. } = self.record;
-        if self.s2.is_slip_unlikely(self.has_slid) && !by_two_senses(slip.without(ignored)) {
-            return DetectorSet::NONE;
-        }
-        let array = DetectorSet::NONE.with(DetectorId::Mlp, true);
-        let alone = slip.or(incipient).without(ignored) == array && !self.record.is_deaf;
-        let far = alone && self.record.silent_for >= HEARD_WITHIN;
-        let ignored = if far { ignored.or(array) } else { ignored };
-        DetectorSet::ALL.without(ignored)
+    /// Detectors whose slip is believed, and those whose warning is: steady sliding is worth a report.
+    #[inline(never)]
+    pub fn credible(&self) -> [DetectorSet; 2] {
+        let (heeded, reports) = (DetectorSet::ALL.without(self.record.ignored), self.record.reports());
+        let slides = self.weighed.slips(reports.max(1));
+        let slip = if self.weighed.slips(reports) { heeded } else { DetectorSet::NONE };
+        [slip, heeded.with(DetectorId::S1, slides)]
+    }
+
+    pub fn sure_permille(&self) -> i32 {
+        self.weighed.sure_permille(self.record.reports())
     }
 
     #[must_use]

@@ -19,6 +19,8 @@ const TWO_BURSTS: u16 = BURST | BURST << 10;
 /// Least distance of two slips or warnings that are signalled, slow frames.
 const SLIPS_APART: u8 = SLOW_HZ as u8 / 2;
 const WARNINGS_APART: u8 = 3 * SLOW_HZ as u8;
+/// As long as a vibration motor takes to stop, 150 ms.
+const RINGS: u8 = (3 * SLOW_HZ / 20) as u8;
 /// Highest step of force: 32 N and more.
 const STEPS: u8 = 6;
 const WHOLE: u8 = 20;
@@ -42,6 +44,8 @@ pub struct Feedback {
     warns: bool,
     slip_in: u8,
     warning_in: u8,
+    /// Slow frames for which the films may still hear it.
+    rings: u8,
 }
 
 impl Feedback {
@@ -50,6 +54,11 @@ impl Feedback {
             (self.pattern, self.part, self.tells_slip) = (BURST, WHOLE, true);
             self.slip_in = SLIPS_APART;
         }
+    }
+
+    /// What the films hear may be the vibration motor.
+    pub const fn rings(&self) -> bool {
+        self.rings > 0
     }
 
     /// Duty of the vibration motor until the next slow frame. `choice`: 0 off, 1 discreet, 2 strong.
@@ -88,6 +97,7 @@ impl Feedback {
             self.pattern = 0;
         }
         let on = self.pattern & 1;
+        self.rings = if on == 1 { RINGS } else { self.rings.saturating_sub(1) };
         self.pattern >>= 1;
         Duty::per_mille(on * twentieth * u16::from(self.part))
     }

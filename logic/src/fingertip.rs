@@ -25,7 +25,7 @@ use crate::arming::{Arming, STEP_FRAMES};
 use crate::behaviours::Running;
 use crate::button::Button;
 use crate::config::Config;
-use crate::detectors::{Detectors, Said};
+use crate::detectors::{Detectors, Said, WEIGHED};
 use crate::feedback::Feedback;
 use crate::force::shear_mrad;
 use crate::grip::relax::Reading;
@@ -160,7 +160,7 @@ impl Fingertip {
 
     /// Likewise, of the films.
     pub fn listen(&mut self) {
-        self.senses.listen(&self.config, self.reflex.is_still(), &mut self.journal);
+        self.senses.listen(&self.config, &mut self.journal);
     }
 
     fn feel(&mut self) {
@@ -169,7 +169,6 @@ impl Fingertip {
         let lacks = held.map(|forces| s2.lacks(&self.config.friction, &forces)).unwrap_or_default();
         self.reflex.feel(self.mode, held.as_ref(), lacks);
         let slid_permille = self.reflex.slid_permille();
-        self.detectors.has_slid = slid_permille.is_some();
         let reading = held.map(|Forces { load_mn, ft_mn, .. }| Reading { load_mn, ft_mn, slid_permille });
         self.reflex.relax(self.mode, reading.filter(|_| self.may_relax()).as_ref());
     }
@@ -208,6 +207,11 @@ impl Fingertip {
             self.senses.lose(&self.config, frame, &mut self.journal);
         }
         let moves = mode::closes(self.mode) || self.mode == GripMode::Settle;
+        if frame.slot() == WEIGHED {
+            let sound = self.senses.sound().filter(|_| !self.feedback.rings());
+            let answers = moves || self.senses.gate.is_active();
+            self.detectors.weigh(sound, !self.reflex.is_still(), answers);
+        }
         let sensed = self.senses.sensed(&self.config, frame, self.drive.permille(), moves);
         self.detectors.step(&self.config, &sensed);
     }
@@ -233,6 +237,9 @@ impl Fingertip {
         }
         let verdicts = Verdicts::of(&self.detectors, self.muted.or(self.config.detectors_off));
         self.reflex.hear(!verdicts.said.is_empty(), verdicts.heard(self.senses.vibration.s1));
+        if !verdicts.slip.is_empty() {
+            self.reflex.sure_permille = self.detectors.sure_permille();
+        }
         let behaviour = match self.behave(verdicts) {
             MotorDrive::Coast
                 if self.reflex.is_relaxing() && self.mode == GripMode::Watch && self.may_relax() =>
@@ -351,9 +358,6 @@ impl Fingertip {
         self.reflex.enter(to, self.senses.grip, held.zip(self.detectors.s2.carried()));
         if to == GripMode::Slip {
             self.feedback.slips();
-        }
-        if matches!(cause, Cause::Incipient(DetectorId::S2)) {
-            self.detectors.tightened();
         }
         self.journal.mode(from, to, cause);
     }

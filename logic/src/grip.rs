@@ -67,6 +67,8 @@ pub struct Reflex {
     /// Ratio that the last slide of this grasp showed, per mille.
     slid_permille: Option<u16>,
     heard: Heard,
+    /// How sure a slip is that is reported now, per mille.
+    pub sure_permille: i32,
     slide_over: bool,
     /// A report that Ft has refuted stands.
     refuted: bool,
@@ -91,6 +93,7 @@ impl Default for Reflex {
             slide: None,
             slid_permille: None,
             heard: Heard::default(),
+            sure_permille: 1_000,
             slide_over: false,
             refuted: false,
             quiet_from_mn: None,
@@ -137,8 +140,9 @@ impl Reflex {
                     self.quiet_from_mn.get_or_insert(fn_mn);
                 }
                 let most_mn = self.most_quiet_mn().unwrap_or(fn_mn);
-                self.slide =
-                    known.map(|(forces, carried)| Slide::begin(forces, carried, self.heard, most_mn));
+                self.slide = known.map(|(forces, carried)| {
+                    Slide::begin(forces, carried, self.heard, self.sure_permille, most_mn)
+                });
             }
             GripMode::Settle if self.left.is_some() => {}
             _ => self.slide = None,
@@ -181,7 +185,7 @@ impl Reflex {
 
     fn size_slide(&mut self, forces: Option<&Forces>) {
         let Some(slide) = &mut self.slide else { return };
-        let lacks_mn = forces.and_then(|forces| slide.feel(forces, self.heard));
+        let lacks_mn = forces.and_then(|forces| slide.feel(forces, self.heard, self.sure_permille));
         self.slid_permille = slide.slid_permille().or(self.slid_permille);
         match lacks_mn {
             Some(..=0) => self.left = Some(0),

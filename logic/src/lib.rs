@@ -29,6 +29,7 @@ pub mod config;
 pub mod detectors;
 pub mod device;
 pub mod emg;
+pub mod evidence;
 pub mod feedback;
 pub mod fingertip;
 pub mod force;

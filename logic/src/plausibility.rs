@@ -1,14 +1,12 @@
-//! Detectors that are ignored: one that reports slip while the finger touches nothing, and the array's
-//! verdicts that begin as the hand tightens on a warning of S2 or an impact rings ([`Disturbance`]).
+//! Detectors that are ignored: those that report slip while the finger touches nothing.
 //!
 //! A detector that meets more noise than it was made for reports slip without end, and the reflex would close
-//! up to the force ceiling. Closing and impacts move load between the array's elements as sliding does.
+//! up to the force ceiling.
 
 use tenax_hal_shim::channel::SLOW_HZ;
 
 use crate::array::SPECTRUM_WINDOW;
 use crate::array::past::LAG_MAX;
-use crate::array::structure::LAGS;
 
 /// Slow frames after which an empty hand's windows hold nothing of an object: the longest, twice, for the
 /// verdict's own hold.
@@ -39,33 +37,6 @@ impl Plausibility {
     }
 }
 
-/// Slow frames after a disturbance in which no verdict of the array that begins is believed.
-const MOVED_FOR: u8 = LAGS[LAGS.len() - 1] as u8;
-
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Disturbance {
-    /// Slow frames since the array was disturbed, up to [`MOVED_FOR`].
-    still: u8,
-    says: bool,
-    began_still: bool,
-}
-
-impl Disturbance {
-    pub const fn begin(&mut self) {
-        self.still = 0;
-    }
-
-    pub fn step(&mut self, disturbed: bool, says: bool) {
-        self.still = if disturbed { 0 } else { self.still.saturating_add(1).min(MOVED_FOR) };
-        self.says = says;
-        self.began_still = says && (self.began_still || self.still >= MOVED_FOR);
-    }
-
-    pub const fn explains_it(&self) -> bool {
-        self.says && !self.began_still
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -86,24 +57,5 @@ mod tests {
         assert!(after(&mut guard, 1, true, true), "it has spoken again");
         assert!(after(&mut guard, SILENT_FOR - 1, true, false));
         assert!(!after(&mut guard, 1, true, false));
-    }
-
-    #[test]
-    fn what_begins_as_it_is_disturbed_is_the_disturbance_and_what_stood_before_is_not() {
-        let mut disturbance = Disturbance::default();
-        (0..MOVED_FOR).for_each(|_| disturbance.step(false, false));
-        disturbance.step(false, true);
-        assert!(!disturbance.explains_it());
-        disturbance.step(true, true);
-        assert!(!disturbance.explains_it(), "it stood before");
-        disturbance.step(true, false);
-        disturbance.step(true, true);
-        assert!(disturbance.explains_it(), "it began anew");
-        for _ in 1..MOVED_FOR {
-            disturbance.step(false, true);
-            assert!(disturbance.explains_it());
-        }
-        disturbance.step(false, true);
-        assert!(!disturbance.explains_it(), "it has outlasted what it looks back on");
     }
 }

@@ -19,6 +19,7 @@ use crate::array::Reading;
 use crate::array::taxels::Taxels;
 use crate::config::Config;
 use crate::detectors::Sensed;
+use crate::evidence::Sound;
 use crate::force::ForceSensor;
 use crate::gate::Gate;
 use crate::grip::Grip;
@@ -143,6 +144,10 @@ impl Senses {
         self.capabilities(journal);
     }
 
+    pub fn sound(&self) -> Option<Sound> {
+        self.hears().then_some(self.detector.sound())
+    }
+
     /// `duty_permille`: 0 to 1000. `moves`: the reflex moves the hand or lets it settle.
     #[inline(always)]
     pub fn sensed(&self, config: &Config, frame: &Frame, duty_permille: u16, moves: bool) -> Sensed<'_> {
@@ -174,10 +179,10 @@ impl Senses {
         self.striking = striking;
         let still = !took_back && matches!(drive, MotorDrive::Coast);
         self.still_frames = if still { self.still_frames.saturating_add(frames) } else { 0 };
-        let loud = striking || self.vibration.level >= SILENT_LEVEL;
+        let closes = matches!(drive, MotorDrive::Close(_));
+        let loud = striking || self.vibration.level >= SILENT_LEVEL || (closes && !warned);
         self.silent_frames = if loud { 0 } else { self.silent_frames.saturating_add(frames) };
         self.held_frames = if self.unloaded { 0 } else { self.held_frames.saturating_add(frames) };
-        let closes = matches!(drive, MotorDrive::Close(_));
         self.closed_frames = if closes { 0 } else { self.closed_frames.saturating_add(frames) };
         self.warned_frames = if closes && warned { 0 } else { self.warned_frames.saturating_add(frames) };
         match drive {
@@ -295,15 +300,14 @@ impl Senses {
         self.select_lines.look(&samples.switch_b);
     }
 
-    /// Noise of the films, quiet slips and steady sliding. `still`: the motor has not been loud of late. Call it once a slow
-    /// frame, in another tick than [`think`](Self::think).
+    /// Noise of the films and steady sliding. Call it once a slow frame, in another tick than [`think`](Self::think).
     #[inline(never)]
-    pub fn listen(&mut self, config: &Config, still: bool, journal: &mut Journal) {
+    pub fn listen(&mut self, config: &Config, journal: &mut Journal) {
         self.films.slow(|film, change| report(journal, PVDF + film, Some(change)));
         self.detector.learn_noise(&config.vibration, self.unloaded);
         let forces = self.forces.filter(|_| matches!(self.grip, Grip::Holds(_)));
         let (wearer, striking) = (self.gate.is_active(), self.striking);
-        self.detector.slow(&config.vibration, Hand { forces, wearer, striking, still, loud: false });
+        self.detector.slow(Hand { forces, wearer, striking, loud: false });
     }
 
     /// A report of slip has been refuted.

@@ -66,6 +66,9 @@ impl Bench {
                 self.fingertip.inject(Said::slip(world.said().is_some_and(|seen| seen.v1 < 0)));
             }
             drive = self.fingertip.tick(&frame);
+            if frame.ends_slow_frame() {
+                self.fingertip.listen();
+            }
             if judge == Judge::Bound {
                 drive = ahead.drive(drive, &self.fingertip, world.planned());
             }

@@ -115,6 +115,11 @@ impl<'m> ArrayDetector<'m> {
         self.logit
     }
 
+    /// Log-odds of slip, millinats.
+    pub fn millinats(&self) -> Option<i32> {
+        self.logit.map(|logit| logit / (self.model.judgement.logit_per_nat / 1_000).max(1))
+    }
+
     pub fn verdict(&self) -> ArrayVerdict {
         self.verdict
     }

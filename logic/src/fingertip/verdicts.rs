@@ -21,9 +21,14 @@ impl Verdicts {
         if said.is_empty() {
             return Self::default();
         }
-        let believed = said.and(detectors.credible());
-        let acted = believed.without(off);
-        Self { said, believed, slip: slip.and(acted), incipient: incipient.and(acted) }
+        let [credible, warns] = detectors.credible();
+        let (slip, incipient) = (slip.and(credible), incipient.and(warns));
+        Self {
+            said,
+            believed: slip.or(incipient),
+            slip: slip.without(off),
+            incipient: incipient.without(off),
+        }
     }
 
     /// `loud`: S1 is above its own threshold.

@@ -21,8 +21,6 @@ const FALL_PERMILLE: u32 = 850;
 /// Least friction, per mille. A dry hand on metal has 0.1 or more, a wet one on glass 0.15, and what slides
 /// keeps 0.6 of it.
 pub const LEAST_PERMILLE: u16 = 70;
-/// Static friction of a wet hand on glass, 0.15, less the force sensor's error, per mille.
-pub const UNLIKELY_PERMILLE: u16 = 130;
 /// Least ratio that counts as friction where one is measured or learned, per mille: less is noise at the
 /// touch.
 pub const FOUND_PERMILLE: u16 = 100;
@@ -85,8 +83,6 @@ pub struct FrictionDetector {
     carried: Option<[i32; CARRIED_FOR]>,
     /// Readings since the hand moved.
     still: u8,
-    /// Largest Ft/Fn of the last 50 ms, per mille.
-    of_late: u16,
 }
 
 impl FrictionDetector {
@@ -130,11 +126,10 @@ impl FrictionDetector {
     pub fn process(&mut self, config: &FrictionConfig, ratio_permille: Option<u16>) -> bool {
         self.ratio_permille = ratio_permille;
         let Some(ratio) = ratio_permille else {
-            (self.s2, self.of_late) = (false, 0);
+            self.s2 = false;
             self.renew();
             return false;
         };
-        self.of_late = self.shown.before.iter().fold(ratio, |most, &before| before.max(most));
         self.shown.add(ratio);
         if let Some(stroke) = &mut self.stroke {
             stroke.add(ratio);
@@ -142,15 +137,6 @@ impl FrictionDetector {
         let threshold = u32::from(self.s2_permille(config)) * if self.s2 { OFF_PERMILLE } else { 1_000 };
         self.s2 = u32::from(ratio) * 1_000 > threshold;
         self.s2
-    }
-
-    /// No single kind of sensor is believed about slip at the Ft/Fn of the last 50 ms: few objects slide there, none at less
-    /// than [`LEAST_PERMILLE`]. `has_slid`: one did in this grasp.
-    pub const fn is_slip_unlikely(&self, has_slid: bool) -> bool {
-        match self.ratio_permille {
-            Some(ratio) => ratio < LEAST_PERMILLE || !has_slid && self.of_late < UNLIKELY_PERMILLE,
-            None => false,
-        }
     }
 
     /// S2 in this grasp, per mille: as set or measured, or higher if the grasp has shown more friction.

@@ -10,15 +10,13 @@ use tenax_hal_shim::wire::Forces;
 use crate::force::friction::LEAST_PERMILLE;
 
 /// First target, before the slide's ratio is known, beyond the force at the begin, per mille: a step that shows
-/// whether Ft follows, and more where S1 reports slip, since friction may have fallen to 0.6 of what held. Each by
-/// the prior, how likely an object slides at this Ft/Fn: friction is log-normal around 0.6 (deviation of the
-/// logarithm 0.5), and wetting leaves 0.6 of it.
+/// whether Ft follows, and more where S1 reports slip, since friction may have fallen to 0.6 of what held. Each as far
+/// as the slip is sure.
 const PROBE_PERMILLE: i64 = 250;
 const MORE_PERMILLE: i64 = 400;
-/// Ft/Fn, per mille, from which a step is made, from which it is whole, and from which all is.
-const NEVER_PERMILLE: i64 = LEAST_PERMILLE as i64;
-const RARE_PERMILLE: i64 = 100;
-const USUAL_PERMILLE: i64 = 400;
+/// Ft/Fn, per mille, from which friction may have fallen, and from which as far: little is smoother.
+const RARE_PERMILLE: i64 = 50;
+const USUAL_PERMILLE: i64 = 225;
 /// Target as a part of what friction needs, per mille, for an object that hardly moves.
 const AIM_PERMILLE: i32 = 1_200;
 /// Speed that raises the target by as much as friction needs, mm/s: 9.81 m/s2 for 60 ms.
@@ -28,6 +26,8 @@ const GAINS_MM_S: i32 = 123;
 const SPEED_MAX_MM_S: i32 = 300;
 /// Rise of Fn from which the ratio is the friction's: below, the quadrants' hysteresis hides the fall of Ft.
 const SHOWS_PERMILLE: i32 = 1_040;
+/// Rise of Ft/Fn that is more than noise, per mille.
+const RISES_PERMILLE: i64 = 1_050;
 /// Part of the load below which Ft shows that the object slides, per mille.
 const SLIDES_PERMILLE: i32 = 900;
 /// Growth within 100 ms from which a load grows on while the object slides, as a part of it, beyond its noise.
@@ -119,6 +119,8 @@ pub struct Slide {
     speed_mm_s: i32,
     loud: bool,
     felt: bool,
+    /// How much of the first step it is worth.
+    sure_permille: i32,
     /// Largest target while nothing but a quiet slip was reported, mN.
     most_quiet_mn: i32,
     quiet_readings: u8,
@@ -133,7 +135,13 @@ pub struct Slide {
 }
 
 impl Slide {
-    pub fn begin(forces: &Forces, carried: Carried, heard: Heard, most_quiet_mn: i32) -> Self {
+    pub fn begin(
+        forces: &Forces,
+        carried: Carried,
+        heard: Heard,
+        sure_permille: i32,
+        most_quiet_mn: i32,
+    ) -> Self {
         let before_mn = carried.ft_mn.clamp(1, FORCE_MAX);
         Self {
             load_mn: (before_mn + carried.grown_mn.max(0) / 2).min(FORCE_MAX),
@@ -145,6 +153,7 @@ impl Slide {
             speed_mm_s: 0,
             loud: heard.loud,
             felt: heard.felt,
+            sure_permille,
             most_quiet_mn,
             quiet_readings: 0,
             stirred: true,
@@ -157,7 +166,8 @@ impl Slide {
     }
 
     /// Missing force, mN, by a reading. None while the ratio is unknown. Call it once a slow frame.
-    pub fn feel(&mut self, forces: &Forces, heard: Heard) -> Option<i32> {
+    pub fn feel(&mut self, forces: &Forces, heard: Heard, sure_permille: i32) -> Option<i32> {
+        self.sure_permille = self.sure_permille.max(sure_permille);
         let ratio = forces.ratio_permille?;
         let (fn_mn, ft_mn) = (forces.fn_mn.clamp(0, FORCE_MAX), forces.ft_mn.clamp(0, FORCE_MAX));
         if fn_mn > self.most_mn {
@@ -172,6 +182,7 @@ impl Slide {
             self.slid_mn[0] += i64::from(ft_mn);
             self.slid_mn[1] += i64::from(fn_mn);
         }
+        self.still_held(fn_mn, ft_mn);
         self.follow(fn_mn, ft_mn, heard);
         let shows = self.shows(fn_mn) && ratio >= LEAST_PERMILLE;
         let falls = i64::from(ft_mn) * 1_000 < i64::from(self.before_mn) * i64::from(SLIDES_PERMILLE);
@@ -200,6 +211,16 @@ impl Slide {
         !self.followed && self.line.slope_permille().is_some_and(|slope| slope < STAYS_PERMILLE)
     }
 
+    /// A ratio beyond that of the begin: the object was held until now, and its load has grown to Ft.
+    fn still_held(&mut self, fn_mn: i32, ft_mn: i32) {
+        let [now, began] =
+            [(ft_mn, self.began_mn), (self.before_mn, fn_mn)].map(|(a, b)| i64::from(a) * i64::from(b));
+        if self.mu_permille.is_none() && !self.followed && now * 1_000 > began * RISES_PERMILLE {
+            self.load_mn = self.load_mn.max(ft_mn);
+            (self.began_mn, self.before_mn, self.line) = (fn_mn.max(1), ft_mn, Line::default());
+        }
+    }
+
     fn follow(&mut self, fn_mn: i32, ft_mn: i32, heard: Heard) {
         if !self.shows(fn_mn) {
             return;
@@ -226,10 +247,10 @@ impl Slide {
             None => {
                 let (fn_mn, ft_mn) = (i64::from(self.began_mn), i64::from(self.before_mn));
                 let ratio = ft_mn * 1_000 / fn_mn.max(1);
-                let part = |from, to| (ratio.clamp(from, to) - from) * 1_000 / (to - from);
-                let probe = PROBE_PERMILLE * part(NEVER_PERMILLE, RARE_PERMILLE) / 1_000;
-                let more = MORE_PERMILLE * part(RARE_PERMILLE, USUAL_PERMILLE) / 1_000;
-                let aim = 1_000 + probe + if self.loud { more } else { 0 };
+                let more = MORE_PERMILLE * (ratio.clamp(RARE_PERMILLE, USUAL_PERMILLE) - RARE_PERMILLE)
+                    / (USUAL_PERMILLE - RARE_PERMILLE);
+                let step = PROBE_PERMILLE + if self.loud { more } else { 0 };
+                let aim = 1_000 + step * i64::from(self.sure_permille) / 1_000;
                 load * aim / 1_000 * fn_mn / ft_mn.max(1)
             }
             Some(mu) => {

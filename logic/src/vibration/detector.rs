@@ -19,8 +19,8 @@ impl Detector for S1 {
     fn step(&mut self, _config: &VibrationConfig, sensed: &Sensed<'_>) -> Option<Said> {
         self.level = sensed.vibration.level;
         self.health = if sensed.vibration_known { DetectorHealth::Working } else { DetectorHealth::Blind };
-        let Vibration { s1, quiet_slip, slides, .. } = sensed.vibration;
-        Some(Said { slip: s1 || quiet_slip, incipient: slides })
+        let Vibration { s1, slides, .. } = sensed.vibration;
+        Some(Said { slip: s1, incipient: slides })
     }
 
     fn describe(&self, config: &VibrationConfig) -> Description {

@@ -18,6 +18,7 @@ use self::film::{Band, ENVELOPE, Film, Levels};
 use self::hum::{Mains, Turn};
 use self::noise::Noise;
 use self::sliding::{Hand, Sliding};
+use crate::evidence::Sound;
 use crate::vibration::settings::VibrationConfig;
 
 /// Frames for which a loud vibration must ring to be an impact; a sliding object rings for single ticks.
@@ -35,12 +36,8 @@ pub enum Trust {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Vibration {
     pub level: u16,
-    /// Readings since something was above two fifths of the threshold, or above the films' own floors, saturating.
-    pub silent_for: u8,
     /// Above the threshold, and no impact.
     pub s1: bool,
-    /// Below it, but far above each film's own floor.
-    pub quiet_slip: bool,
     /// Rings above the slip band, and not for longer than an impact.
     pub impact: bool,
     pub slides: bool,
@@ -65,7 +62,6 @@ pub struct VibrationDetector {
     noise: Noise,
     sliding: Sliding,
     slides: bool,
-    silent_for: u8,
 }
 
 impl VibrationDetector {
@@ -175,9 +171,7 @@ impl VibrationDetector {
         self.s1 = loud && (self.s1 || !impact || lasts);
         Vibration {
             level: (envelope >> Q).clamp(0, i32::from(TickRecord::VIBRATION_MAX)) as u16,
-            silent_for: self.silent_for,
             s1: self.s1,
-            quiet_slip: self.sliding.slips,
             impact: rings && self.ringing_frames < config.impact_frames,
             slides: self.slides,
             masked: self.noise.noisy,
@@ -191,11 +185,12 @@ impl VibrationDetector {
         self.mains.tune(config.mains_60_hz ^ self.noise.other_mains);
     }
 
-    pub fn slow(&mut self, config: &VibrationConfig, hand: Hand) {
+    pub const fn sound(&self) -> Sound {
+        self.sliding.sound
+    }
+
+    pub fn slow(&mut self, hand: Hand) {
         self.slides = self.sliding.step(&self.envelopes, self.above, &Hand { loud: self.s1, ..hand });
-        let on = (i32::from(config.s1) << Q) + self.noise.raised;
-        let stirs = self.sliding.stirs || self.envelopes.iter().any(|&envelope| envelope >= on / 5 * 2);
-        self.silent_for = if stirs { 0 } else { self.silent_for.saturating_add(1) };
     }
 
     /// What the films hear is no slip.

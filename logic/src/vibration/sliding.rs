@@ -5,8 +5,9 @@
 use tenax_hal_shim::channel::PVDF_COUNT;
 use tenax_hal_shim::wire::Forces;
 
+use crate::emg::level::{LEVEL_Q, log2};
+use crate::evidence::Sound;
 use crate::force::Asked;
-use crate::force::friction::UNLIKELY_PERMILLE;
 
 /// Slow frames over which floors are learned when a grasp begins: 0.3 s.
 const LEARN_FRAMES: u16 = 24;
@@ -18,12 +19,11 @@ const DOWN_SHIFT: u32 = 2;
 const LEARN_SHIFT: u32 = 4;
 const UP_SHIFT: u32 = 10;
 const SMOOTH_SHIFT: u32 = 3;
-/// Fraction bits of a level.
+/// Fraction bits of a level, and of a level as a multiple of its floor.
 const Q: u32 = 8;
+const TIMES_Q: u32 = 6;
 /// Least floor: 1 mV, more than the converter's own noise.
 const LEAST_FLOOR: i32 = 5 << Q;
-/// Floor above which a film's silence says nothing: 8 mV, as a slip of quiet films gives 15 to 100.
-const DEAF_FLOOR: i32 = 8 * LEAST_FLOOR;
 /// Films that have to agree.
 const FILMS: u32 = 3;
 /// Level from which a film is loud, in floors: alone, and together with noise above the band.
@@ -36,8 +36,8 @@ const ON_TOP_MN: i32 = 1_000;
 /// the report ends.
 const BEGIN_FRAMES: u8 = 16;
 const END_FRAMES: u8 = 8;
-/// Slow frames for which a still hand must hear as much until it is slip: 25 ms.
-const SLIP_FRAMES: u8 = 2;
+/// Levels over a floor that are told apart, octaves, Q10.
+const LEVELS: core::ops::RangeInclusive<i32> = -(1 << LEVEL_Q)..=6 << LEVEL_Q;
 
 #[derive(Clone, Copy, Debug)]
 pub struct Hand {
@@ -46,8 +46,6 @@ pub struct Hand {
     pub wearer: bool,
     /// The reflex answers slip or lets the object settle, so the hand itself is loud.
     pub striking: bool,
-    /// The motor has not been loud of late.
-    pub still: bool,
     /// S1 is above its threshold.
     pub loud: bool,
 }
@@ -85,13 +83,10 @@ impl Floors {
     }
 }
 
-struct Sound {
-    /// Enough films are loud, or half so.
-    sounds: bool,
-    stirs: bool,
-    /// Most floors are so high that a slip may be below them.
-    is_deaf: bool,
-    loudest: i32,
+/// Octaves, Q10, of Q16 samples over a floor.
+fn over(now: i32, floor: i32) -> i32 {
+    let times = ((now.max(0) as u32) >> (16 - Q - TIMES_Q)) / floor.max(LEAST_FLOOR) as u32;
+    (log2(times.max(1)) - ((TIMES_Q as i32) << LEVEL_Q)).clamp(*LEVELS.start(), *LEVELS.end())
 }
 
 #[derive(Clone, Debug, Default)]
@@ -101,14 +96,7 @@ pub struct Sliding {
     learned_for: u16,
     lasted: u8,
     said: bool,
-    /// Loudest film of the last slow frame: what falls by a quarter since is an impact's decay.
-    loudest: i32,
-    /// Slow frames of a sound that is no noise of the hand.
-    heard: u8,
-    /// An object slips, far below S1's threshold.
-    pub slips: bool,
-    /// Something is heard, or the floors are so high that a slip may be below them.
-    pub stirs: bool,
+    pub sound: Sound,
     asked: Asked,
     /// Load of the last slow frame, its growth without a pause, and the largest one of a report, mN: of a pulse.
     last_mn: i32,
@@ -122,14 +110,15 @@ impl Sliding {
         let Some(forces) = hand.forces.filter(|_| !hand.wearer) else {
             (self.learned_for, self.lasted, self.said) = (0, 0, false);
             (self.asked, self.pulse_mn) = (Asked::default(), 0);
-            (self.heard, self.slips) = (0, false);
+            self.sound = Sound::default();
             return false;
         };
+        self.sound =
+            if self.learned_for < LEARN_FRAMES { Sound::default() } else { self.hear(envelopes, above) };
         if hand.striking {
             if hand.loud {
                 (self.asked, self.pulse_mn) = (Asked::default(), 0);
             }
-            self.slips &= self.hear(envelopes, above).stirs;
             return self.said;
         }
         let up = if self.learned_for < LEAP_FRAMES {
@@ -146,17 +135,11 @@ impl Sliding {
             together += u32::from(heard.are_over(LOUD_TOGETHER));
             loudest = loudest.max(heard.level);
         }
-        let above_now = above;
         let above = self.above.step(above, up, 2 * LOUD_ABOVE);
         self.learned_for = self.learned_for.saturating_add(1);
         if self.learned_for < LEARN_FRAMES {
             return false;
         }
-        let now = self.hear(envelopes, above_now);
-        let sounds_now = if self.slips { now.stirs } else { now.sounds };
-        let decays = now.loudest < self.loudest / 4 * 3;
-        self.loudest = now.loudest;
-        self.heard = if sounds_now && hand.still && !decays { self.heard.saturating_add(1) } else { 0 };
         let sounds =
             above.level < loudest && (loud >= FILMS || (above.are_over(LOUD_ABOVE) && together >= FILMS));
         self.lasted = if sounds == self.said { 0 } else { self.lasted + 1 };
@@ -171,33 +154,18 @@ impl Sliding {
         // Another pulse would spend more than the allowance.
         let spent = self.asked.in_vain(&forces, ON_TOP_MN - self.pulse_mn);
         let may = !spent && !self.asked.is_held(&forces, ON_TOP_MN);
-        // Where hardly anything slips a quiet sound is no evidence.
-        let may_slip = forces.ratio_permille.is_none_or(|ratio| ratio >= UNLIKELY_PERMILLE);
-        self.slips = may_slip && ((self.slips && sounds_now) || self.heard >= SLIP_FRAMES);
-        if self.slips {
-            self.asked.begin(&forces);
-        }
-        self.stirs = now.stirs || now.is_deaf;
-        self.said && may && may_slip
+        self.said && may
     }
 
-    /// Envelopes of this moment.
+    /// Mean of the films that give a reading, and of the noise above the band.
     fn hear(&self, envelopes: &[i32; PVDF_COUNT], above: i32) -> Sound {
-        let (mut loud, mut stirs, mut deaf, mut loudest) = (0, 0, 0, 0);
+        let (mut sum, mut films) = (0, 0);
         for (film, &now) in self.films.iter().zip(envelopes) {
-            let (floor, level) = (film.floor.max(LEAST_FLOOR), now >> (16 - Q));
-            loud += u32::from(level > LOUD * floor);
-            stirs += u32::from(level > LOUD / 2 * floor);
-            deaf += u32::from(film.floor > DEAF_FLOOR);
-            loudest = loudest.max(now);
+            if now != 0 {
+                (sum, films) = (sum + over(now, film.floor), films + 1);
+            }
         }
-        let in_band = above < loudest;
-        Sound {
-            sounds: in_band && loud >= FILMS,
-            stirs: in_band && stirs >= FILMS,
-            is_deaf: deaf > PVDF_COUNT as u32 / 2,
-            loudest,
-        }
+        Sound { rise: (sum / films.max(1)) as i16, above: over(above, self.above.floor) as i16 }
     }
 
     /// Closing has shown that nothing slides: what is heard is noise.
@@ -205,7 +173,7 @@ impl Sliding {
         for (film, &now) in self.films.iter_mut().zip(envelopes) {
             film.floor = film.floor.max(now >> (16 - Q));
         }
-        (self.said, self.lasted, self.heard, self.slips) = (false, 0, 0, false);
+        (self.said, self.lasted) = (false, 0);
     }
 }
 
@@ -220,7 +188,7 @@ mod tests {
         let mut envelopes = [2 * MV; PVDF_COUNT];
         envelopes[..films].fill(mv * MV);
         let forces = Forces { fn_mn: load_mn, fx_mn: 0, fy_mn: 0, ft_mn: 0, load_mn, ratio_permille: None };
-        let hand = Hand { forces: Some(forces), wearer: false, striking: false, still: true, loud: false };
+        let hand = Hand { forces: Some(forces), wearer: false, striking: false, loud: false };
         (0..frames).fold(false, |_, _| sliding.step(&envelopes, above_mv * MV, &hand))
     }
 

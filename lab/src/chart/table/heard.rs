@@ -10,7 +10,7 @@ use tenax_hal_shim::wire::Down;
 use tenax_hal_shim::words::GripMode;
 use tenax_logic::array::{Features, Preprocessor, Reading};
 use tenax_logic::config::Config;
-use tenax_logic::detectors::{Detectors, Sensed};
+use tenax_logic::detectors::{Detectors, Sensed, WEIGHED};
 use tenax_logic::hebbian::HebbianDetector;
 use tenax_logic::journal::Journal;
 use tenax_logic::samples::LastSamples;
@@ -246,18 +246,22 @@ impl Ears {
             MotorDrive::Coast => 0,
         };
         let sensed = senses.sensed(config, frame, duty, false);
+        if frame.slot() == WEIGHED {
+            detectors.weigh(senses.sound(), false, false);
+        }
         detectors.step(config, &sensed);
         let slot = usize::from(frame.slot());
         if let Some(taxel) = taxels.get_mut(slot) {
             *taxel = Some(frame.switch_b);
         }
         let new = if slot == ARRAY_COUNT { features.push(taxels) } else { None };
-        let believed = detectors.slip().or(detectors.incipient()).and(detectors.credible());
+        let [slip, warns] = detectors.credible();
+        let believed = detectors.slip().and(slip).or(detectors.incipient().and(warns));
         hear(&Felt { frame, sensed: &sensed, believed, features: new, slides });
         senses.driven(drive, false, GripMode::Watch, 1);
         if frame.ends_slow_frame() {
             senses.think(config, samples, journal);
-            senses.listen(config, true, journal);
+            senses.listen(config, journal);
             let _told = journal.take_slow();
         }
         while journal.next_event().is_some() {}
