@@ -229,6 +229,15 @@ fn a_flexor_that_sticks_as_a_closing_ends_closes_no_longer() {
     assert_eq!(emg.quality(0), Quality::Endless);
 }
 
+#[test]
+fn where_an_envelope_stands_still_no_muscle_is_at_work() {
+    let mut emg = wearer();
+    run(&mut emg, 0.9, |t| [500.0, rest(t)[1]]);
+    assert!(!emg.is_idle(0, 500_000) && emg.is_idle(0, 60_000), "still not long enough");
+    run(&mut emg, 0.3, |t| [500.0, rest(t)[1]]);
+    assert!(emg.is_idle(0, 500_000) && emg.is_idle(0, 520_000) && !emg.is_idle(0, 700_000));
+}
+
 // Shows W5.
 #[test]
 fn a_flexor_that_never_rests_is_told_without_calibration_too() {
