@@ -46,8 +46,7 @@ class Program(unittest.TestCase):
                 told = io.StringIO()
                 with contextlib.redirect_stderr(told):
                     taught = camera.Taught(port)
-                    # The board consents once it has felt that its hand is empty, 12.5 ms after power-up.
-                    time.sleep(0.1)
+                    time.sleep(0.1)  # It consents once it has felt that its hand is empty, 12.5 ms after power-up.
                     taught.teach((1, -1), 0.02)
                     time.sleep(0.5)
                 self.assertEqual(told.getvalue(), "")
