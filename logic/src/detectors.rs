@@ -175,7 +175,7 @@ impl Detectors {
     pub fn weigh(&mut self, sound: Option<Sound>, moves: bool, answers: bool) {
         let (array, ratio_permille) = (self.mlp.millinats(), self.s2.ratio_permille());
         self.weighed.weigh(&Clues { sound, array, ratio_permille, moves, answers });
-        self.quiet = self.weighed.slips(0) && !self.record.slip.contains(DetectorId::Mlp);
+        self.quiet = self.weighed.hears_slip() && !self.record.slip.contains(DetectorId::Mlp);
     }
 
     #[inline(never)]

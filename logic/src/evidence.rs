@@ -60,18 +60,21 @@ pub struct Clues {
 pub struct Evidence {
     films: i32,
     others: i32,
+    /// The films are above their floors.
+    hears: bool,
 }
 
 /// Before the first reading there is none.
 impl Default for Evidence {
     fn default() -> Self {
-        Self { films: 0, others: -1_000_000 }
+        Self { films: 0, others: -1_000_000, hears: false }
     }
 }
 
 impl Evidence {
     pub fn weigh(&mut self, clues: &Clues) {
         let octaves = |weight: i32, level: i32| (weight * level) >> LEVEL_Q;
+        self.hears = clues.sound.is_some_and(|sound| sound.rise > 0);
         self.films = clues.sound.map_or(NO_FILMS, |Sound { rise, above }| {
             octaves(RISE, rise.into()) + octaves(ABOVE, above.into())
         }) + if clues.moves { MOVES } else { 0 };
@@ -88,6 +91,11 @@ impl Evidence {
     /// `reports`: so many detectors report slip by themselves.
     pub fn slips(&self, reports: i32) -> bool {
         self.odds(reports) > SLIPS
+    }
+
+    /// Slip that no detector reports. Films that give nothing are taken for as much as they tell on average, which is no sound.
+    pub fn hears_slip(&self) -> bool {
+        self.hears && self.slips(0)
     }
 
     /// How much of the first step against it a slip is worth, per mille.
@@ -150,6 +158,21 @@ mod tests {
         let alone = Clues { sound: None, array: Some(3_500), ..quiet(250) };
         assert!(weighed(alone).slips(0), "without films the array decides");
         assert!(!weighed(Clues { sound: quiet(250).sound, ..alone }).slips(0), "which they contradict");
+    }
+
+    // Shows R4.
+    #[test]
+    fn films_that_give_nothing_or_no_rise_hear_no_slip_whatever_else_is_known() {
+        for (sound, answers) in
+            [None, octaves(0.0, 0.0), octaves(-0.5, 0.0)].map(|own| [(own, false), (own, true)]).concat()
+        {
+            for (array, ratio) in [None, Some(0), Some(7_000)].map(|own| [(own, 300), (own, 2_000)]).concat()
+            {
+                let clues = Clues { sound, array, ratio_permille: Some(ratio), moves: false, answers };
+                assert!(!weighed(clues).hears_slip(), "{clues:?}");
+            }
+        }
+        assert!(weighed(Clues { sound: octaves(4.5, 0.5), ..quiet(250) }).hears_slip());
     }
 
     #[test]
