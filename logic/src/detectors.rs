@@ -11,7 +11,7 @@ use tenax_hal_shim::wire::{DETECTORS_MAX, Forces};
 
 use crate::array::{MLP_DECIDES, Reading, ShippedDetector};
 use crate::config::Config;
-use crate::evidence::{Clues, Evidence as Weighed, Sound};
+use crate::evidence::{Clues, LogOdds, Sound};
 use crate::force::FrictionDetector;
 use crate::hebbian::HebbianDetector;
 use crate::photoelastic::{Head, PhotoelasticDetector};
@@ -106,7 +106,7 @@ pub struct Detectors {
     pub injected: Injected,
     photoelastic: PhotoelasticDetector,
     record: Record,
-    weighed: Weighed,
+    weighed: LogOdds,
     /// Nothing but the films' quiet sound is slip.
     quiet: bool,
 }

@@ -57,7 +57,7 @@ pub struct Clues {
 }
 
 #[derive(Clone, Copy, Debug)]
-pub struct Evidence {
+pub struct LogOdds {
     films: i32,
     others: i32,
     /// The films are above their floors.
@@ -65,13 +65,13 @@ pub struct Evidence {
 }
 
 /// Before the first reading there is none.
-impl Default for Evidence {
+impl Default for LogOdds {
     fn default() -> Self {
         Self { films: 0, others: -1_000_000, hears: false }
     }
 }
 
-impl Evidence {
+impl LogOdds {
     pub fn weigh(&mut self, clues: &Clues) {
         let octaves = |weight: i32, level: i32| (weight * level) >> LEVEL_Q;
         self.hears = clues.sound.is_some_and(|sound| sound.rise > 0);
@@ -116,8 +116,8 @@ mod tests {
 
     const ALL: [u16; 2] = [20, 2_000];
 
-    fn weighed(clues: Clues) -> Evidence {
-        let mut evidence = Evidence::default();
+    fn weighed(clues: Clues) -> LogOdds {
+        let mut evidence = LogOdds::default();
         assert!(!evidence.slips(3), "nothing is known yet");
         evidence.weigh(&clues);
         evidence
