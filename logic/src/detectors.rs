@@ -170,7 +170,7 @@ impl Detectors {
     }
 
     /// Call it once a slow frame, in slot [`WEIGHED`]. `sound`: none if the hand itself may be what the films hear. `moves`: the
-    /// motor has been loud within 100 ms. `answers`: the reflex or a muscle moves the hand, or it settles.
+    /// motor has been loud within 100 ms. `answers`: the reflex moves the hand or lets it settle.
     #[inline(never)]
     pub fn weigh(&mut self, sound: Option<Sound>, moves: bool, answers: bool) {
         let (array, ratio_permille) = (self.mlp.millinats(), self.s2.ratio_permille());

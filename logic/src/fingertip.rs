@@ -209,8 +209,7 @@ impl Fingertip {
         let moves = mode::closes(self.mode) || self.mode == GripMode::Settle;
         if frame.slot() == WEIGHED {
             let sound = self.senses.sound().filter(|_| !self.feedback.rings());
-            let answers = moves || self.senses.gate.is_active();
-            self.detectors.weigh(sound, !self.reflex.is_still(), answers);
+            self.detectors.weigh(sound, !self.reflex.is_still(), moves);
         }
         let sensed = self.senses.sensed(&self.config, frame, self.drive.permille(), moves);
         self.detectors.step(&self.config, &sensed);
