@@ -11,8 +11,6 @@ pub mod budgets;
 #[cfg(feature = "host")]
 pub mod cli;
 #[cfg(feature = "host")]
-pub mod disturbances;
-#[cfg(feature = "host")]
 pub mod drawn;
 #[cfg(feature = "host")]
 pub mod figure;

@@ -24,7 +24,6 @@ use crate::board::emulated;
 use crate::board::kept::model_of;
 use crate::board::simulated::{Grips, frames_in, seconds_of};
 use crate::board::{Recorder, Run, Summary, simulated};
-use crate::disturbances;
 use crate::input;
 use crate::plot::sheet::Sheet;
 
@@ -117,9 +116,6 @@ pub fn load_scene(asked: &str) -> anyhow::Result<SceneFile> {
         return Ok(SceneFile::parse(text, &format!("scenes/{name}.toml"))?);
     }
     let path = Path::new(asked);
-    if asked == disturbances::NAME {
-        return Ok(SceneFile::parse(&disturbances::text(1, 60), asked)?);
-    }
     if !path.exists() {
         let names: Vec<&str> = builtin().iter().map(|(name, _)| *name).collect();
         bail!("no scene is called {asked}, and there is no such file; the scenes are {}", names.join(", "));

@@ -2,11 +2,10 @@
 
 use std::sync::OnceLock;
 
-use crate::common::{asked, parsed, text};
+use crate::common::{parsed, text};
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_scene::World;
 use tenax_scene::plant::Plant;
-use tenax_sim::disturbances;
 use tenax_sim::report::Report;
 use tenax_sim::report::bound::SAME_MM;
 
@@ -96,15 +95,4 @@ fn what_drifts_and_hums_reaches_the_pins() {
         };
         assert_ne!(last(&text), last(text.split(what).next().unwrap()), "{name}");
     }
-}
-
-#[test]
-fn minutes_of_disturbances_slip_nowhere_and_drop_nothing() {
-    // TENAX_MINUTES=60 is the hour.
-    let minutes = asked("TENAX_MINUTES").unwrap_or(1);
-    let report = crate::common::ran(&parsed(&disturbances::text(1, minutes)), 1).report;
-    assert_eq!((report.object.kept, report.slip.macro_slips), (Some(true), Some(0)));
-    assert!(report.added.added_without_need_n.unwrap() < 0.5, "{:?}", report.reflex);
-    let holds = report.bound.distance_mm.is_some_and(|mm| mm < SAME_MM);
-    assert!(report.bound.kept == Some(true) && holds, "{:?}", report.bound);
 }
