@@ -1,6 +1,5 @@
 //! Recordings: a CSV file and a recipe, the analogue front end between somebody's sensors and the pins, become a plant.
 
-pub mod calibrate;
 pub mod facts;
 pub mod filter;
 pub mod library;

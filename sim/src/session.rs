@@ -27,7 +27,7 @@ use crate::board::{Recorder, Run, Summary, simulated};
 use crate::input;
 use crate::plot::sheet::Sheet;
 
-use crate::figure::panels;
+use crate::figure::figure;
 use crate::live::{Served, Use};
 use crate::replay::{ReplayPlant, library};
 use crate::report::fate::Fate;
@@ -256,7 +256,7 @@ fn told(
     let Witness { timeline, judge, added, sketch } = witness;
     let subject =
         Subject { scene, board, seed, run, timeline: &timeline, judge: &judge, added: &added, truth, bound };
-    (Report::new(&subject), panels::figure(&subject, sketch), timeline)
+    (Report::new(&subject), figure(&subject, sketch), timeline)
 }
 
 pub fn name_of(recording: &Path) -> String {

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use tenax_sim::plot::figure::colour;
+use tenax_sim::plot::colour;
 use tenax_sim::plot::sheet::{Axis, Mark, Panel, Series, Sheet};
 
 use super::{Chart, csv};

@@ -12,7 +12,7 @@ use tenax_scene::plant::Plant;
 use tenax_sim::board::simulated::Grips;
 use tenax_sim::drawn::HALF_PAD_MM;
 use tenax_sim::jobs::Jobs;
-use tenax_sim::plot::figure::colour;
+use tenax_sim::plot::colour;
 use tenax_sim::plot::sheet::{Axis, Mark, Panel, Series, Sheet};
 use tenax_sim::report::fate::Fate;
 use tenax_sim::session::controls;

@@ -19,7 +19,7 @@ use crate::again;
 use crate::board::Recorder;
 use crate::live::{Live, Person, Use};
 use crate::plot::sheet::draw;
-use crate::replay::{self, calibrate};
+use crate::replay::{self, muscles};
 use crate::report::text::Text;
 use crate::session::{self, Board};
 use tenax_frames::link::captured::is_recording;
@@ -162,7 +162,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         Subject::Recording(file, recording) => {
             let progress = Progress::new("replay", recording.duration_s());
             let (recipe, seed) = (args.recipe.as_deref(), args.seed);
-            let calibrate = |recordings: &Vec<PathBuf>| calibrate::calibrate(recordings, recipe, seed);
+            let calibrate = |recordings: &Vec<PathBuf>| muscles::calibrate_by(recordings, recipe, seed);
             let wearer = (recipe, args.calibrate_emg.as_ref().map(calibrate).transpose()?);
             session::replay_served(file, wearer, line_use, seed, &board, recorder, &mut |s| progress.at(s))
         }

@@ -1,7 +1,8 @@
 //! Both muscles of a recording, as the board reads them.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
+use anyhow::{anyhow, bail};
 use tenax_hal_shim::channel::{CHANNELS, FRAME_HZ, MYO_EXTENSOR, MYO_FLEXOR, MYO_SELECT, SCANS_PER_FRAME};
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::schedule::select_of_slot;
@@ -68,4 +69,15 @@ pub fn calibrate(phases: [&Muscles; 3]) -> Result<EmgModel, Refusal> {
         }
     }
     unreachable!("it ends by itself")
+}
+
+/// Calibrates to the wearer of these recordings: rest, close, open.
+/// Fails if one cannot be read or has no recipe, or the calibration is refused.
+pub fn calibrate_by(recordings: &[PathBuf], recipe: Option<&str>, seed: u64) -> anyhow::Result<EmgModel> {
+    let [rest, close, open] = recordings else {
+        bail!("a calibration takes three recordings: REST.csv,CLOSE.csv,OPEN.csv");
+    };
+    let read = |path: &PathBuf| Muscles::read(path, recipe, seed);
+    let (rest, close, open) = (read(rest)?, read(close)?, read(open)?);
+    calibrate([&rest, &close, &open]).map_err(|refusal| anyhow!("the calibration is refused: {refusal}"))
 }
