@@ -34,15 +34,14 @@ const FILES: [(&str, &str, &str); 9] = [
     ("/icon.svg", "image/svg+xml", include_str!("../../page/www/icon.svg")),
 ];
 const EVENT_EVERY: Duration = Duration::from_millis(50);
-/// Longest line for the bench or the player, bytes.
-const ACT_MAX: usize = 40;
+/// Longest line for the player, bytes.
+const CONTROL_MAX: usize = 40;
 
 pub struct Web {
     server: Server,
     pages: Arc<Mutex<Pages>>,
     commands: Sender<Down>,
-    /// Lines for the scene's bench or the player: never a command of the board's line.
-    bench: Sender<String>,
+    player: Sender<String>,
     control: bool,
     port: u16,
 }
@@ -53,7 +52,7 @@ fn lock(pages: &Mutex<Pages>) -> MutexGuard<'_, Pages> {
 
 impl Web {
     /// Watches a board, for a page on this port of 127.0.0.1; 0: any free port. Fails if the port cannot be had.
-    pub fn new(line: &Target, truth: Option<&Target>, control: bool, port: u16) -> anyhow::Result<Self> {
+    pub fn new(line: &Target, control: bool, port: u16) -> anyhow::Result<Self> {
         let server = Server::http((Ipv4Addr::LOCALHOST, port)).map_err(|error| {
             anyhow!("cannot serve a page on port {port}: choose another, or 0 for any that is free: {error}")
         })?;
@@ -63,10 +62,10 @@ impl Web {
         let pages = Arc::<Mutex<Pages>>::default();
         let place = json!({ "place": line.to_string(), "missed": 0, "bad_frames": 0 });
         lock(&pages).with(|view| view.tell(place));
-        let bench = source::start(line, truth, waiting, sender);
+        let player = source::start(line, waiting, sender);
         let own = Arc::clone(&pages);
         thread::spawn(move || news.into_iter().for_each(|news| lock(&own).take(news)));
-        Ok(Self { server, pages, commands, bench, control, port })
+        Ok(Self { server, pages, commands, player, control, port })
     }
 
     pub fn place(&self) -> String {
@@ -138,23 +137,17 @@ impl Web {
                 Err(why) => (409, format!("{why:#}")),
             };
         }
-        let (status, text) = match (words(path, "/play/"), words(path, "/bench/"), command(path)) {
-            (Some(control), ..) => match self.bench.send(control) {
+        let (status, text) = match (control_in(path), command(path)) {
+            (Some(control), _) => match self.player.send(control) {
                 Ok(()) => (202, "done"),
                 Err(_) => (404, "this is no recording"),
             },
-            (_, None, None) => (404, "no such command"),
+            (None, None) => (404, "no such command"),
             _ if !self.control => (403, "read only: start with --control to change anything"),
-            (_, Some(act), _) => {
-                let mut pages = self.pages();
-                if !pages.view.state().get("bench").is_some_and(Value::is_array) {
-                    (404, "no bench: only a served scene has one, where --truth says")
-                } else {
-                    pages.with(|view| view.say(&format!("at the bench: {act}")));
-                    sent(self.bench.send(act).is_ok())
-                }
-            }
-            (.., Some(command)) => sent(self.commands.send(command).is_ok()),
+            (None, Some(command)) => match self.commands.send(command) {
+                Ok(()) => (202, "sent"),
+                Err(_) => (503, "there is no line"),
+            },
         };
         (status, text.to_owned())
     }
@@ -184,13 +177,9 @@ fn file(path: &str) -> Option<(u16, &'static str, Vec<u8>)> {
     Some((200, *kind, text.replace("<html ", "<html data-monitor ").into_bytes()))
 }
 
-const fn sent(is_sent: bool) -> (u16, &'static str) {
-    if is_sent { (202, "sent") } else { (503, "there is no line") }
-}
-
-/// The line for the bench or the player in a path: `/bench/tap/pvdf_3`, `/play/+5`.
-fn words(path: &str, stem: &str) -> Option<String> {
-    let is_word = |c: char| c.is_ascii_alphanumeric() || "_./+-".contains(c);
-    let act = path.strip_prefix(stem).filter(|act| act.len() <= ACT_MAX && act.chars().all(is_word))?;
-    Some(act.replace('/', " "))
+/// The line for the player in a path: `/play/+5`.
+fn control_in(path: &str) -> Option<String> {
+    let is_word = |c: char| c.is_ascii_alphanumeric() || "./+-".contains(c);
+    let control = path.strip_prefix("/play/")?;
+    (control.len() <= CONTROL_MAX && control.chars().all(is_word)).then(|| control.replace('/', " "))
 }

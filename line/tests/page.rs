@@ -29,7 +29,7 @@ impl Web {
     }
 
     pub fn watching(served: &Serving, more: &[&str]) -> Self {
-        Self::start(&[&["--port", &served.place, "--truth", &served.truth], more].concat())
+        Self::start(&[&["--port", &served.place], more].concat())
     }
 
     fn place(&self) -> &str {
@@ -64,7 +64,7 @@ impl Web {
     pub fn until(&self, what: &str, mut is_so: impl FnMut(&Value) -> bool) -> Value {
         let began = Instant::now();
         let is_found = |event: &Value| {
-            assert!(began.elapsed() < WITHIN, "never {what}: {} {}", event["truth"], event["line"]);
+            assert!(began.elapsed() < WITHIN, "never {what}: {}", event["line"]);
             is_so(event)
         };
         self.events().find(is_found).expect("the page stays open")
@@ -98,7 +98,7 @@ fn the_page_names_exchanged_and_dead_wires() {
     let faults = fault("array_2", "swapped", "array_3") + &fault("fsr_b", "dead", "");
     let served = Serving::start(&(BENCH.to_owned() + &faults));
     let web = Web::watching(&served, &["--control"]);
-    web.until("a bench", |event| event["bench"].is_array());
+    web.until("the board", |event| event["t_s"].is_number());
     assert_eq!(web.post("/selftest/skip").0, 409);
     web.selftest("fsr/array_2/array_3");
     assert!(web.post("/selftest/start/nonsense").1.starts_with("no channel begins with `nonsense`"));
@@ -112,7 +112,7 @@ fn the_page_names_exchanged_and_dead_wires() {
                 ["press", "fsr_c", ..] => assert_eq!(web.post("/selftest/skip").0, 202),
                 ["press", channel, ..] => {
                     assert_eq!(test["prompt"], line, "what is asked is shown");
-                    assert_eq!(web.post(&format!("/bench/press/{channel}")).0, 202);
+                    served.tell(&format!("press {channel}"));
                 }
                 _ => {}
             }
@@ -151,38 +151,22 @@ fn the_page_names_exchanged_and_dead_wires() {
 }
 
 #[test]
-fn the_page_grips_and_wets_what_its_bench_holds_and_consents() {
+fn the_page_shows_consent_and_changes_a_setting() {
     let served = Serving::start(BENCH);
     let web = Web::watching(&served, &["--control"]);
-    let event = web.until("a bench", |event| event["bench"].is_array());
-    assert_eq!(event["bench"][0][0], "g");
-    let post = |path: &str| assert_eq!(web.post(path).0, 202, "{path}");
     // As it is switched on it has consent for a minute; a press gives the whole minute anew.
     let left_s = |event: &Value| -> u32 {
         let digits = event["line"].as_str().unwrap_or_default().replace(|c: char| !c.is_ascii_digit(), "");
         digits.parse().unwrap_or(0)
     };
     web.until("less consent", |event| (1..57).contains(&left_s(event)));
-    post("/bench/button");
+    served.tell("button");
     web.until("consent", |event| left_s(event) > 58);
-    post("/set/s1-mv/120");
+    assert_eq!(web.post("/set/s1-mv/120").0, 202);
     web.until("the setting", |event| event["s1_mv"] == 120);
-    post("/bench/g");
-    let truth = |event: &Value, key: &str| event["truth"][key].as_f64().unwrap_or(0.0);
-    web.until("a grip", |event| truth(event, "grip_n") > 1.0);
-    let dry_n = truth(&web.until("a lift", |event| truth(event, "needed_n") > 0.1), "needed_n");
-    post("/bench/w");
-    web.until("wet", |event| truth(event, "needed_n") > 1.2 * dry_n);
-    let says = |event: &Value| event["log"].as_array().unwrap().iter().any(|line| line == "at the bench: w");
-    web.until("the log", says);
-    post("/bench/d");
-    web.until("put down", |event| truth(event, "grip_n") <= 0.0);
     served.end();
-    web.until("no bench without its scene", |event| event["bench"].is_null());
-    assert_eq!(web.post("/bench/g").0, 404);
 }
 
-/// On a line alone, as a real board's, there is no bench.
 #[test]
 fn only_pages_of_this_address_may_ask_and_without_control_they_change_nothing() {
     let served = Serving::start(BENCH);
@@ -195,19 +179,13 @@ fn only_pages_of_this_address_may_ask_and_without_control_they_change_nothing() 
     }
     assert_eq!(status("GET", "/", "Host: evil.example\r\n"), 403);
     assert_eq!(status("GET", "/", &format!("Host: {own}\r\n")), 200);
-    web.until("a bench", |event| event["bench"].is_array());
+    web.until("the board", |event| event["t_s"].is_number());
     let posts = |paths: &[&str]| paths.iter().map(|path| web.post(path).0).collect::<Vec<_>>();
-    assert_eq!(posts(&["/bench/tap/pvdf_3", "/zero", "/calibrate", "/set/s1-mv/120"]), [403; 4]);
+    assert_eq!(posts(&["/zero", "/calibrate", "/set/s1-mv/120"]), [403; 3]);
     assert_eq!(
-        posts(&["/drive", "/bench/g%0ao", "/set/s1-mv", "/set/s1/120", "/set/s1-mv/x", "/"]),
-        [404; 6]
+        posts(&["/drive", "/bench/g", "/play/g%0ao", "/set/s1-mv", "/set/s1/120", "/set/s1-mv/x", "/"]),
+        [404; 7]
     );
     web.selftest("fsr_a");
-
-    let alone = Web::start(&["--port", &served.place, "--control"]);
-    let event = alone.until("the board", |event| event["t_s"].as_f64() > Some(1.0));
-    assert!(event["bench"].is_null() && event["truth"].is_null());
-    let (status, why) = alone.post("/bench/g");
-    assert!(status == 404 && why.starts_with("no bench"), "{status} {why}");
     served.end();
 }

@@ -44,7 +44,7 @@ struct Watch {
 impl Watch {
     fn of(place: &str) -> Self {
         let ((commands, waiting), (sender, news)) = (channel(), channel());
-        start(&place.parse().unwrap(), None, waiting, sender);
+        start(&place.parse().unwrap(), waiting, sender);
         Self { pages: Pages::default(), news, _commands: commands }
     }
 

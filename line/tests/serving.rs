@@ -79,7 +79,6 @@ pub fn trusting() -> Serving {
 
 pub struct Serving {
     pub place: String,
-    pub truth: String,
     person: Person,
     ended: Arc<AtomicBool>,
     run: JoinHandle<Tally>,
@@ -89,15 +88,10 @@ impl Serving {
     /// Serves a scene file's text. A board that is reset starts again and has kept its flash.
     pub fn start(scene: &str) -> Self {
         let file = SceneFile::parse(scene, "served").unwrap_or_else(|error| panic!("{error}"));
-        let keys = vec![("g".to_owned(), "grip".to_owned())];
-        let options = Options { tcp: Some(0), truth: Some(0), keys, ..Options::default() };
+        let options = Options { tcp: Some(0), ..Options::default() };
         let (mut server, down) = Server::start(&options).unwrap();
-        let (place, truth) = (server.places()[0].clone(), server.truth_place().unwrap().to_owned());
+        let place = server.places()[0].clone();
         let (person, ended) = (Person::default(), Arc::<AtomicBool>::default());
-        let (acts, at_bench) = (server.take_acts().unwrap(), person.clone());
-        thread::spawn(move || {
-            acts.iter().for_each(|line| act(&at_bench, String::from_utf8_lossy(&line).trim_end()));
-        });
         let (runs, ends) = (person.clone(), Arc::clone(&ended));
         let run = thread::spawn(move || {
             loop {
@@ -109,24 +103,21 @@ impl Serving {
                 }
             }
         });
-        Self { place, truth, person, ended, run }
+        Self { place, person, ended, run }
     }
 
+    /// What a person at the bench does.
     pub fn tell(&self, line: &str) {
-        act(&self.person, line);
+        match line {
+            "button" => self.person.press(),
+            "reset" => self.person.reset(),
+            _ => line.parse().into_iter().for_each(|act| self.person.act(act)),
+        }
     }
 
     pub fn end(self) -> Tally {
         self.ended.store(true, Relaxed);
         self.person.reset();
         self.run.join().unwrap()
-    }
-}
-
-fn act(person: &Person, line: &str) {
-    match line {
-        "button" => person.press(),
-        "reset" => person.reset(),
-        _ => line.parse().into_iter().for_each(|act| person.act(act)),
     }
 }

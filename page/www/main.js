@@ -1,6 +1,6 @@
 // The page: one source at a time, its state, and the pictures made from it.
 import { Bench, Board, Monitor, Recording } from "./sources.js";
-import { append, at, keys, save, score, selftest, Settings, state, truth_words } from "./panels.js";
+import { append, at, keys, save, score, selftest, Settings, state } from "./panels.js";
 import * as plots from "./plots.js";
 import * as stage from "./stage.js";
 
@@ -57,7 +57,7 @@ function take(told) {
 
 function merge(change) {
   Object.assign(last, change);
-  const { points, truths } = traces;
+  const { points } = traces;
   if (change.restarted || change.gone) { fates.clear(); arrivals.length = 0; }
   if (change.restarted || change.points && points.length && change.t_s < points[points.length - 1][0]) points.length = 0;
   if (change.points) points.push(...change.points);
@@ -68,12 +68,6 @@ function merge(change) {
   for (const [name, ...flags] of change.detectors || []) {
     const before = fates.get(name) || [null, null, null];
     fates.set(name, before.map((frame, n) => flags[n] ? change.frame : frame));
-  }
-  if (change.truth) {
-    const { t_s, slide_mm_s, needed_n, grip_n } = change.truth;
-    if (truths.length && t_s < truths[truths.length - 1][0]) truths.length = 0;
-    truths.push([t_s, slide_mm_s, needed_n, grip_n, null]);
-    at("title").textContent = truth_words(change.truth);
   }
   append("log", change.log || []);
   if ("selftest" in change) selftest(change.selftest, last.bench && can());
@@ -111,7 +105,7 @@ function show(name) {
   for (const [id, own] of Object.entries(bars)) at(id).hidden = name !== own;
   for (const [id, own] of [["to-bench", "bench"], ["to-board", "board"], ["to-file", "file"]]) at(id).setAttribute("aria-pressed", String(name === own));
   at("stage").hidden = at("done").hidden = name !== "bench";
-  at("keys").hidden = name !== "bench" && !served;
+  at("keys").hidden = name !== "bench";
   at("selftest-box").hidden = name === "file";
 }
 // One change of the source after the other.

@@ -57,12 +57,6 @@ export function score(scene, name_beside) {
   for (const [name, of] of rows) row(table, [[name], ...hands.map(own => [of(own), of === fate && ["lost", "broken", "dented"].includes(of(own)) ? "bad" : ""])]);
 }
 
-// What the scene has of its true state, from a server that watches one.
-export function truth_words(now) {
-  const contact = now.grip_n <= 0 ? "no contact" : now.stuck_part <= 0 ? "slides" : now.stuck_part < 1 ? "micro slip" : "sticks";
-  return `${contact}, ${now.slide_mm_s.toFixed(1)} mm/s; grip ${now.grip_n.toFixed(1)} N, needs ${now.needed_n.toFixed(1)} N; ${now.dropped ? "DROPPED" : "kept"}; ${now.slips} slips, ${now.slipped_mm.toFixed(1)} mm`;
-}
-
 let offered = "";
 export function keys(all, control, post) {
   const offer = JSON.stringify([all, control]);

@@ -79,7 +79,7 @@ impl Live {
         if self.room < 0 {
             return Vec::new();
         }
-        let sent = self.down.bytes.lock().unwrap_or_else(PoisonError::into_inner).try_recv();
+        let sent = self.down.lock().unwrap_or_else(PoisonError::into_inner).try_recv();
         let bytes = sent.unwrap_or_default();
         let counted = if bytes.is_empty() { 0 } else { bytes.len().max(COMMAND_BYTES) };
         self.room -= counted as i64 * i64::from(SCAN_HZ);
@@ -183,15 +183,13 @@ impl<P: Plant> Plant for Served<P> {
 mod tests {
     use super::*;
     use std::sync::mpsc::sync_channel;
-    use tenax_frames::serve::Teller;
 
     #[test]
     fn clients_bytes_come_down_no_faster_than_on_the_real_line_and_commands_than_a_board_takes_them() {
         for (length, expected) in [(250, 92_000..92_500), (10, 4_000..4_020)] {
             let (down, bytes) = sync_channel(1_000);
             (0..1_000).for_each(|_| down.send(vec![7; length]).unwrap());
-            let down = Down { bytes: Arc::new(Mutex::new(bytes)), teller: Teller::default() };
-            let mut live = Live::new(down, Person::default());
+            let mut live = Live::new(Arc::new(Mutex::new(bytes)), Person::default());
             let second: usize = (0..SCAN_HZ).map(|_| live.bytes().len()).sum();
             assert!(expected.contains(&second), "{second}");
         }

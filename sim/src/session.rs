@@ -150,8 +150,7 @@ pub fn scene_served(
     let span_s = (0.0, seconds_of(frames_in(file.duration_s())));
     let world = World::new(file, seed);
     let calibrated = world.calibrated().as_ref().map(model_of).transpose()?;
-    let teller = line.live.as_ref().map(|live| live.down.teller.clone()).unwrap_or_default();
-    let plant = line.of(Drawn::new(world, span_s, teller));
+    let plant = line.of(Drawn::new(world, span_s));
     let mut witness = Witness::new(0.0, span_s, calibrated.as_ref());
     witness.judge.deaf = file.lifts().collect();
     let (run, Served { mut plant, line }) = board.record(plant, &mut (&mut witness, recorder), progress)?;

@@ -12,6 +12,4 @@ pub mod serve;
 pub mod settings;
 #[cfg(feature = "host")]
 pub mod tool;
-#[cfg(feature = "host")]
-pub mod truth;
 pub mod words;

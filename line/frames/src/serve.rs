@@ -13,8 +13,7 @@ use std::sync::{Arc, Mutex};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
-use self::hub::{Frame, Framer, Hub};
-use crate::truth::{Key, Truth};
+use self::hub::{Framer, Hub};
 
 /// Frames on their way down to the board; a client that sends more waits.
 const DOWN_FRAMES: usize = 64;
@@ -27,9 +26,6 @@ pub struct Options {
     pub at: Option<PathBuf>,
     /// TCP port of 127.0.0.1; 0: any free port.
     pub tcp: Option<u16>,
-    /// TCP port of 127.0.0.1 for the scene's true state; 0: any free port.
-    pub truth: Option<u16>,
-    pub keys: Vec<Key>,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -47,18 +43,12 @@ impl Display for Tally {
 }
 
 /// A server's other end, for the board that it serves, or for one after the other.
-#[derive(Clone)]
-pub struct Down {
-    pub bytes: Arc<Mutex<Receiver<Vec<u8>>>>,
-    pub teller: Teller,
-}
+pub type Down = Arc<Mutex<Receiver<Vec<u8>>>>;
 
 pub struct Server {
     hub: Arc<Hub>,
     framer: Framer,
     places: Vec<String>,
-    truth: Option<(String, Arc<Hub>)>,
-    acts: Option<Receiver<Vec<u8>>>,
     doors: Vec<JoinHandle<()>>,
 }
 
@@ -66,7 +56,7 @@ impl Server {
     /// Begins to serve. Fails if a place cannot be had; says which and what to do.
     pub fn start(options: &Options) -> anyhow::Result<(Self, Down)> {
         let (down, bytes) = sync_channel(DOWN_FRAMES);
-        let hub = Hub::new(down, 0, None);
+        let hub = Hub::new(down);
         let (mut places, mut doors) = (Vec::new(), Vec::new());
         if options.pty {
             #[cfg(unix)]
@@ -79,26 +69,12 @@ impl Server {
             #[cfg(not(unix))]
             anyhow::bail!("this system has no pseudo-terminals: serve on TCP, with --serve-tcp PORT");
         }
-        let mut open = |port, hub: &Arc<Hub>| {
-            let (place, door) = hub.serve_tcp(port)?;
-            doors.push(door);
-            anyhow::Ok(place)
-        };
         if let Some(port) = options.tcp {
-            places.push(open(port, &hub)?);
+            let (place, door) = hub.serve_tcp(port)?;
+            places.push(place);
+            doors.push(door);
         }
-        let (act, acts) = sync_channel(DOWN_FRAMES);
-        let mut truth = None;
-        if let Some(port) = options.truth {
-            let bench = serde_json::to_string(&options.keys)? + "\n";
-            let hub = Hub::new(act, b'\n', Some(Frame::from(bench.as_bytes())));
-            truth = Some((open(port, &hub)?, hub));
-        }
-        let teller = Teller(truth.as_ref().map(|(_, hub)| Arc::clone(hub)));
-        Ok((
-            Self { hub, framer: Framer::default(), places, truth, acts: Some(acts), doors },
-            Down { bytes: Arc::new(Mutex::new(bytes)), teller },
-        ))
+        Ok((Self { hub, framer: Framer::default(), places, doors }, Arc::new(Mutex::new(bytes))))
     }
 
     pub fn line(&mut self, bytes: &[u8]) {
@@ -109,16 +85,6 @@ impl Server {
         }
     }
 
-    /// Address of the scene's true state, for `tenax monitor --truth`.
-    pub fn truth_place(&self) -> Option<&str> {
-        self.truth.as_ref().map(|(place, _)| place.as_str())
-    }
-
-    /// Lines that say what is done at the bench, once. They come with the true state, never on the board's line.
-    pub const fn take_acts(&mut self) -> Option<Receiver<Vec<u8>>> {
-        self.acts.take()
-    }
-
     pub fn places(&self) -> &[String] {
         &self.places
     }
@@ -126,27 +92,9 @@ impl Server {
     /// Ends when every client has read what is left, at most 0.5 s later.
     pub fn close(self) -> Tally {
         self.hub.close(LAST_READ);
-        if let Some((_, truth)) = &self.truth {
-            truth.close(Duration::ZERO);
-        }
         for door in self.doors {
             let _panicked = door.join();
         }
         self.hub.tally()
-    }
-}
-
-#[derive(Clone, Default)]
-pub struct Teller(Option<Arc<Hub>>);
-
-impl Teller {
-    pub const fn is_served(&self) -> bool {
-        self.0.is_some()
-    }
-
-    pub fn tell(&self, truth: &Truth) {
-        if let (Some(hub), Ok(text)) = (&self.0, serde_json::to_string(truth)) {
-            hub.publish(format!("{text}\n").as_bytes());
-        }
     }
 }

@@ -16,11 +16,11 @@ use tenax_frames::words::{answer_words, why, words};
 
 const EXAMPLES: &str = "\
 Examples:
-  tenax monitor                                  the page, for a browser of this machine
-  tenax monitor --control --truth tcp:HOST:PORT  the page changes settings and grips at a served scene's bench
-  tenax monitor --file hand.mcap                 plays a recording on the page
-  tenax monitor --plain --port /dev/pts/5        one line a message, as over SSH
-  tenax monitor --send network                   prints the answer";
+  tenax monitor                            the page, for a browser of this machine
+  tenax monitor --control                  the page changes settings, too
+  tenax monitor --file hand.mcap           plays a recording on the page
+  tenax monitor --plain --port /dev/pts/5  one line a message, as over SSH
+  tenax monitor --send network             prints the answer";
 
 /// Watch a board's serial line.
 #[derive(Debug, clap::Args)]
@@ -37,10 +37,6 @@ pub struct Args {
     /// TCP port of 127.0.0.1 for the page; 0: any free port
     #[arg(long, value_name = "HTTP_PORT", default_value_t = 7780, conflicts_with = "plain")]
     web: u16,
-    /// Also show the true forces and slip of a scene, from the address that `tenax run --serve-truth` prints. With --control,
-    /// the page has the keys of the scene `bench`
-    #[arg(long, value_name = "tcp:HOST:PORT", conflicts_with = "plain")]
-    truth: Option<Target>,
     /// Let the page change settings, zero and calibrate [default: it only watches]
     #[arg(long, conflicts_with = "plain")]
     control: bool,
@@ -73,7 +69,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         if let Target::File(path) = &target {
             Reel::open(path)?;
         }
-        let web = Web::new(&target, args.truth.as_ref(), args.control, args.web)?;
+        let web = Web::new(&target, args.control, args.web)?;
         out::note!("open {} in a browser of this machine; Ctrl-C ends it", web.place());
         web.serve();
         return Ok(ExitCode::SUCCESS);

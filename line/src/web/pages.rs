@@ -3,7 +3,7 @@
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 
 use serde_json::{Value, json};
-use tenax_frames::{play, truth};
+use tenax_frames::play;
 
 use super::source::News;
 use crate::view::View;
@@ -41,8 +41,6 @@ impl Pages {
             News::Gone(why) => view.gone(&why),
             News::Moved(words) => view.say(&words),
             News::Frame(frame, counts) => view.frame(frame.as_ref().map_err(|bad| *bad), counts),
-            News::Scene(truth::Told::Truth(truth)) => view.tell(json!({ "truth": truth })),
-            News::Scene(truth::Told::Bench(keys)) => view.tell(json!({ "bench": keys })),
             News::Played(play::Told::Message(heard)) => view.hear(&heard),
             News::Played(play::Told::At(playing)) => view.tell(json!({ "playing": playing })),
             News::Played(play::Told::Again) => view.begin_anew(),

@@ -1,4 +1,4 @@
-//! Watches a line, a recording and a scene's true state on threads of their own. A line is opened again whenever it ends.
+//! Watches a line or a recording on a thread of its own. A line is opened again whenever it ends.
 
 use std::path::Path;
 use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
@@ -7,7 +7,6 @@ use std::time::Duration;
 
 use tenax_frames::link::{ANSWER_WITHIN, Board, Client, Counts, Heard, Target};
 use tenax_frames::play::{self, Reel};
-use tenax_frames::truth;
 use tenax_hal_shim::wire::{Answer, BadFrame, Down};
 
 const AGAIN_AFTER: Duration = Duration::from_millis(500);
@@ -20,36 +19,21 @@ pub enum News {
     Moved(String),
     /// A message, or why a frame is none; the counts so far.
     Frame(Result<Heard, BadFrame>, Counts),
-    Scene(truth::Told),
     Played(play::Told),
     Answered(Down, Result<Answer, String>),
 }
 
-/// Starts the threads, which end when `news` is dropped; `truth` is the address of the scene's true state. Lines sent to what it returns are done at the scene's bench, or control how a
-/// recording is played.
-pub fn start(
-    line: &Target,
-    truth: Option<&Target>,
-    commands: Receiver<Down>,
-    news: Sender<News>,
-) -> Sender<String> {
-    let (bench, acts) = channel();
-    if let Target::File(path) = line.clone() {
-        thread::spawn(move || {
-            if let Err(error) = watch_recording(&path, &acts, &news) {
-                let _left = news.send(News::Gone(format!("{error:#}")));
-            }
-        });
-        return bench;
-    }
-    if let Some(target) = truth.cloned() {
-        let news = news.clone();
-        let mut tell = move |told| news.send(News::Scene(told)).is_ok();
-        thread::spawn(move || truth::watch(&target, &acts, &mut tell));
-    }
+/// Starts the thread, which ends when `news` is dropped. Lines sent to what it returns control how a recording is played.
+pub fn start(line: &Target, commands: Receiver<Down>, news: Sender<News>) -> Sender<String> {
+    let (player, controls) = channel();
     let target = line.clone();
-    thread::spawn(move || watch(&target, &commands, &news));
-    bench
+    thread::spawn(move || {
+        let Target::File(path) = &target else { return watch(&target, &commands, &news) };
+        if let Err(error) = watch_recording(path, &controls, &news) {
+            let _left = news.send(News::Gone(format!("{error:#}")));
+        }
+    });
+    player
 }
 
 fn watch_recording(path: &Path, controls: &Receiver<String>, news: &Sender<News>) -> anyhow::Result<()> {

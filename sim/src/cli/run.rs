@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
-use std::sync::mpsc::Receiver;
 use std::thread;
 
 use anyhow::Context;
@@ -95,10 +94,6 @@ pub struct Args {
     /// Run at real time and serve the line on this TCP port of 127.0.0.1; 0: any free port
     #[arg(long, value_name = "PORT")]
     serve_tcp: Option<u16>,
-    /// Also serve the scene's true state on this TCP port of 127.0.0.1, for `tenax monitor --truth`: a line of JSON 50 times a
-    /// second; 0: any free port. Keys of the monitor's page act on the scene
-    #[arg(long, value_name = "PORT", conflicts_with = "replay")]
-    serve_truth: Option<u16>,
     /// Repeat the scene, each time with the next seed, until Ctrl-C
     #[arg(long = "loop", conflicts_with_all = ["replay", "record", "controls"], requires = "served")]
     repeat: bool,
@@ -144,8 +139,8 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     let board = if args.host { Board::Host } else { Board::emulated(&workspace::root()?)? };
     let (mut server, down) = served(args)?.unzip();
     let person = Person::default();
-    if let Some(server) = &mut server {
-        listen(&person, server.take_acts(), resets(args));
+    if server.is_some() {
+        listen(&person, resets(args));
     }
     let live = || down.as_ref().map(|down| Live::new(down.clone(), person.clone()));
     if let (true, Subject::Scene(file), Some(server)) = (args.repeat, &subject, &mut server) {
@@ -207,55 +202,36 @@ fn list() -> anyhow::Result<ExitCode> {
 
 /// Begins to serve, if that is asked for, and says where.
 fn served(args: &Args) -> anyhow::Result<Option<(Server, Down)>> {
-    if !args.serve && args.serve_tcp.is_none() && args.serve_truth.is_none() {
+    if !args.serve && args.serve_tcp.is_none() {
         return Ok(None);
     }
-    let options = serve::Options {
-        pty: args.serve,
-        at: args.serve_at.clone(),
-        tcp: args.serve_tcp,
-        truth: args.serve_truth,
-        keys: [(BUTTON, CONSENTS)]
-            .into_iter()
-            .chain(resets(args).then_some((RESET, RESTARTS)))
-            .chain(KEYS.map(|(key, what, _)| (key, what)))
-            .chain([("weight 5", "lay 5 N on the finger")])
-            .map(|(key, what)| (key.to_owned(), what.to_owned()))
-            .collect(),
-    };
+    let options = serve::Options { pty: args.serve, at: args.serve_at.clone(), tcp: args.serve_tcp };
     let (server, down) = Server::start(&options)?;
     for place in server.places() {
         out::note!("serving on {place}");
     }
-    if let Some(place) = server.truth_place() {
-        out::note!("telling what really happens on {place}");
-    }
     Ok(Some((server, down)))
 }
 
-/// The line that presses the button, and what that is for a person.
+/// The lines that press the blue button and the black one. What the board's flash keeps it has again afterwards.
 const BUTTON: &str = "button";
-const CONSENTS: &str = "press the blue button (consent for a minute)";
-/// The same of the black one. What the board's flash keeps it has again afterwards.
 const RESET: &str = "reset";
-const RESTARTS: &str = "press the board's reset button";
 
 /// Whether the board can be reset: another run follows, and the host's board keeps its flash.
 const fn resets(args: &Args) -> bool {
     args.repeat && args.host
 }
 
-/// Does what a person at the keyboard types, or what a program pipes, such as the prompts of `tenax selftest`; and what comes from
-/// the page where the truth is told.
-fn listen(person: &Person, acts: Option<Receiver<Vec<u8>>>, resets: bool) {
+/// Does what a person at the keyboard types, or what a program pipes, such as the prompts of `tenax selftest`.
+fn listen(person: &Person, resets: bool) {
     let is_typed = io::stdin().is_terminal();
     if is_typed {
-        out::note!("Enter alone: {CONSENTS}");
+        out::note!("Enter alone: press the blue button (consent for a minute)");
         let keys = KEYS.map(|(key, what, _)| format!("{key} {what}"));
         out::note!("with Enter: {},\n{}", keys[..4].join(", "), keys[4..].join(", "));
         out::note!("`weight 5` lays 5 N on the finger, `tap pvdf_3` taps a film");
         if resets {
-            out::note!("`{RESET}`: {RESTARTS}");
+            out::note!("`{RESET}`: press the board's reset button");
         }
     }
     let own = person.clone();
@@ -267,12 +243,6 @@ fn listen(person: &Person, acts: Option<Receiver<Vec<u8>>>, resets: bool) {
     };
     // They end with the process.
     thread::spawn(move || io::stdin().lines().map_while(Result::ok).for_each(does));
-    let own = person.clone();
-    thread::spawn(move || {
-        for line in acts.into_iter().flatten() {
-            _ = act(&own, String::from_utf8_lossy(&line).trim_end(), resets);
-        }
-    });
 }
 
 /// Does at the bench what a line says. False: it says nothing that can be done.

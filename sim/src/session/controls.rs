@@ -1,7 +1,6 @@
 //! What stands beside a scene's run: its bound, and its controls. Always on the host.
 
 use rayon::prelude::*;
-use tenax_frames::serve::Teller;
 use tenax_hal_shim::detector::{DetectorId, DetectorSet};
 use tenax_scene::bound::Plan;
 use tenax_scene::{SceneFile, World};
@@ -30,7 +29,7 @@ fn fate(file: &SceneFile, world: World, grips: Grips) -> Fate {
 
 fn drawn(file: &SceneFile, world: World) -> Drawn {
     let span_s = (0.0, seconds_of(frames_in(file.duration_s())));
-    Drawn::new(world, span_s, Teller::default())
+    Drawn::new(world, span_s)
 }
 
 /// The bound of a scene beside `run`. It plans the least force from which nothing slides. Beside a run that kept the object with

@@ -6,15 +6,12 @@ use tenax_hal_shim::wire::Slow;
 use tenax_logic::emg::model::EmgModel;
 use tenax_scene::World;
 use tenax_scene::plant::{Pins, Plant};
-use tenax_scene::truth::Row;
 
 use crate::board::Recorder;
 use crate::figure::sketch::{Needs, Sketch};
 use crate::report::added::{Added, Grips};
 use crate::report::wearer::Judge;
 use crate::timeline::Timeline;
-use tenax_frames::serve::Teller;
-use tenax_frames::truth::{self, Truth};
 
 pub(super) struct Witness {
     pub(super) timeline: Timeline,
@@ -52,41 +49,18 @@ pub(super) struct Drawn {
     pub(super) world: World,
     pub(super) needs: Needs,
     pub(super) grips: Grips,
-    teller: Teller,
-    rows: u32,
 }
 
 impl Drawn {
-    pub(super) fn new(world: World, span_s: (f64, f64), teller: Teller) -> Self {
-        Self { world, needs: Needs::new(span_s), grips: Grips::default(), teller, rows: 0 }
+    pub(super) fn new(world: World, span_s: (f64, f64)) -> Self {
+        Self { world, needs: Needs::new(span_s), grips: Grips::default() }
     }
 
     pub(super) fn draw(&mut self) {
-        let mut newest = None;
         for row in self.world.take_trace() {
             self.needs.push(&row);
             self.grips.push(&row);
-            newest = Some(row);
         }
-        let Some(row) = newest.filter(|_| self.teller.is_served()) else { return };
-        self.rows += 1;
-        if self.rows.is_multiple_of(truth::ROWS) {
-            self.teller.tell(&truth_of(&self.world, &row));
-        }
-    }
-}
-
-fn truth_of(world: &World, row: &Row) -> Truth {
-    let truth = world.truth();
-    Truth {
-        t_s: row.t_s,
-        slide_mm_s: row.slide_mm_s.abs(),
-        stuck_part: row.stuck_part,
-        grip_n: row.grip_n,
-        needed_n: row.needed_n,
-        slips: truth.slips.iter().filter(|slip| !slip.meant).count(),
-        slipped_mm: truth.slip_distance_mm,
-        dropped: truth.dropped,
     }
 }
 

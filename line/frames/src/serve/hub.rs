@@ -25,10 +25,7 @@ pub struct Hub {
     clients: Mutex<Clients>,
     writers: AtomicUsize,
     closed: AtomicBool,
-    greeting: Option<Frame>,
-    /// Frames that go down, and the byte that ends one.
     down: SyncSender<Vec<u8>>,
-    end: u8,
 }
 
 #[derive(Default)]
@@ -38,20 +35,16 @@ struct Clients {
 }
 
 impl Hub {
-    pub fn new(down: SyncSender<Vec<u8>>, end: u8, greeting: Option<Frame>) -> Arc<Self> {
+    pub fn new(down: SyncSender<Vec<u8>>) -> Arc<Self> {
         let clients = Mutex::new(Clients { senders: Some(Vec::new()), ..Clients::default() });
         let (writers, closed) = (AtomicUsize::default(), AtomicBool::default());
-        Arc::new(Self { clients, writers, closed, greeting, down, end })
+        Arc::new(Self { clients, writers, closed, down })
     }
 
     /// Adds a client: its frames, from the next one on. It leaves by dropping them.
     pub fn join(&self) -> Receiver<Frame> {
         let (sender, frames) = sync_channel(CLIENT_FRAMES);
         let Clients { senders: Some(senders), tally } = &mut *self.clients() else { return frames };
-        if let Some(greeting) = &self.greeting {
-            // There is room.
-            let _sent = sender.try_send(Arc::clone(greeting));
-        }
         tally.clients += 1;
         senders.push(sender);
         frames
@@ -108,7 +101,7 @@ impl Hub {
     }
 
     pub fn read(&self, client: &mut dyn Read) {
-        let (mut framer, mut buffer) = (Framer::ending(self.end), [0; 4096]);
+        let (mut framer, mut buffer) = (Framer::default(), [0; 4096]);
         while !self.is_closed() {
             match client.read(&mut buffer) {
                 Ok(count @ 1..) => self.pass_on(&mut framer, &buffer[..count]),
@@ -171,24 +164,17 @@ impl Hub {
     }
 }
 
-/// Cuts a stream of bytes after each `end`: into frames, or into lines.
+/// Cuts a stream of bytes into frames, each of which ends with a zero.
 #[derive(Default)]
-pub struct Framer {
-    bytes: Vec<u8>,
-    end: u8,
-}
+pub struct Framer(Vec<u8>);
 
 impl Framer {
-    pub const fn ending(end: u8) -> Self {
-        Self { bytes: Vec::new(), end }
-    }
-
     /// Takes a byte; gives the frame that it ends. Of one that is too long to be any, as much as shows that.
     pub fn push(&mut self, byte: u8) -> Option<Vec<u8>> {
-        if byte == self.end || self.bytes.len() <= FRAME_MAX {
-            self.bytes.push(byte);
+        if byte == 0 || self.0.len() <= FRAME_MAX {
+            self.0.push(byte);
         }
-        (byte == self.end).then(|| std::mem::take(&mut self.bytes))
+        (byte == 0).then(|| std::mem::take(&mut self.0))
     }
 }
 
