@@ -9,12 +9,9 @@ fn main() {
     programs();
 }
 
-/// Sets `python` and, with its name in MCAP_PYTHON, `mcap_reader`.
+/// Sets `mcap_reader`, with the reader's name in MCAP_PYTHON.
 fn programs() {
-    println!("cargo::rustc-check-cfg=cfg(mcap_reader, python)");
-    if Command::new("python3").arg("--version").output().is_ok_and(|ran| ran.status.success()) {
-        println!("cargo::rustc-cfg=python");
-    }
+    println!("cargo::rustc-check-cfg=cfg(mcap_reader)");
     // The public reader of recordings, where `.ci/python` or a person has installed it.
     println!("cargo::rerun-if-env-changed=TENAX_PYTHON");
     if std::path::Path::new("../target/python/pyvenv.cfg").exists() {

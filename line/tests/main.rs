@@ -7,7 +7,6 @@ mod config;
 mod lines;
 mod page;
 mod play;
-mod python;
 mod recording;
 mod selftest;
 mod served;
