@@ -10,41 +10,15 @@ fn case(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cases").join(name)
 }
 
-/// Runs a case; what is printed, or the error.
-fn run(replay: &Path, more: &[&str]) -> Result<String, String> {
+/// Runs a case; what is printed.
+fn run(replay: &Path, more: &[&str]) -> String {
     let folder = tempfile::tempdir().unwrap();
     let mut run = Command::new(env!("CARGO_BIN_EXE_tenax-sim"));
     let done =
         run.args(["run", "--host", "--replay"]).arg(replay).args(more).current_dir(&folder).output().unwrap();
     let [out, error] = [done.stdout, done.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
-    if done.status.success() { Ok(out) } else { Err(error) }
-}
-
-fn with_recipe(name: &str, recipe: &str, more: &[&str]) -> Result<String, String> {
-    let file = tempfile::Builder::new().suffix(".toml").tempfile().unwrap();
-    std::fs::write(&file, format!("title = 'T'\ndescription = 'D'\n{recipe}")).unwrap();
-    run(&case(name), &[&["--recipe", file.path().to_str().unwrap()], more].concat())
-}
-
-fn map(column: &str, channel: &str) -> String {
-    format!("[[map]]\ncolumn = '{column}'\nchannels = ['{channel}']\ngain = 1.0\noffset_v = 0.0\n")
-}
-
-#[test]
-fn semicolons_decimal_commas_and_no_header_are_named_and_a_recipe_says_them() {
-    let layout = "[table]\ndelimiter = ';'\ndecimal = ','\n";
-    let rate = "header = false\n[time]\nrate_hz = 1000\n";
-    for (name, named, more, column, columns) in [
-        ("02_semicolon_header.csv", "[table] delimiter = \";\"", "", "pvdf_1", 4),
-        ("02_semicolon_no_header.csv", "a recipe says: [table]", rate, "column_3", 5),
-    ] {
-        let error = run(&case(name), &[]).unwrap_err();
-        assert!(error.contains(named), "{error}");
-        let recipe = layout.to_owned() + more + &map(column, "pvdf_1");
-        let read = with_recipe(name, &recipe, &["--explain"]).unwrap();
-        let rows = format!("100 rows of {columns} columns");
-        assert!(read.contains(&rows) && read.contains("1.65, 1.653, 1.6556"), "{read}");
-    }
+    assert!(done.status.success(), "{error}");
+    out
 }
 
 #[test]
@@ -53,32 +27,12 @@ fn comments_names_that_come_twice_and_nanoseconds_are_read() {
         ("03_openbci_percent_comments_dup_columns.txt", "03_openbci.toml", "1600000000"),
         ("04_percent_time_ns.csv", "04_ns.toml", "1400000000"),
     ] {
-        let read = run(&case(table), &["--explain", "--recipe", case(recipe).to_str().unwrap()]).unwrap();
+        let read = run(&case(table), &["--explain", "--recipe", case(recipe).to_str().unwrap()]);
         assert!(
             read.contains(words) && read.contains("200.0 rows a second") && read.contains("myo_flexor"),
             "{read}"
         );
     }
-}
-
-#[test]
-fn bursts_with_equal_stamps_are_spread_as_they_were_taken_and_one_stamp_for_all_is_refused() {
-    let map =
-        "[time]\ncolumn = 't_s'\n".to_owned() + &map("emg_counts", "myo_flexor").replace("1.0", "0.00001");
-    let explained = |name| with_recipe(name, &map, &["--explain"]);
-    let error = explained("21_all_one_stamp.csv").unwrap_err();
-    assert!(error.contains("every row has the time 1 s"), "{error}");
-    let (even, bursts) = (explained("21_even.csv").unwrap(), explained("21_bursts_of_16.csv").unwrap());
-    assert!(
-        bursts.contains("300 rows with the stamp of the row before: spread evenly")
-            && even.contains(" 0 rows with the stamp"),
-        "{bursts}"
-    );
-    let columns = |text: &str| {
-        text.lines().filter(|line| line.contains("emg_counts")).map(str::to_owned).collect::<Vec<_>>()
-    };
-    assert_eq!(columns(&even), columns(&bursts));
-    assert!(bursts.contains("1000.0 rows a second"), "{bursts}");
 }
 
 fn rows(table: &Path) -> Vec<Vec<String>> {
@@ -115,7 +69,7 @@ fn a_flexor_that_sticks_hardly_closes_is_doubted_and_an_opening_works() {
         ("06_flexor_sticks_2150mv.csv", 3.0, &[]),
     ] {
         let table = with_opening(&case(name), 9.0);
-        let report = run(table.path(), &[&["--recipe", &recipe, "--report", "json"], more].concat()).unwrap();
+        let report = run(table.path(), &[&["--recipe", &recipe, "--report", "json"], more].concat());
         let report: Value = serde_json::from_str(&report).unwrap();
         let (wearer, faults) = (&report["wearer"], report["faults"].as_array().unwrap());
         assert!(wearer["closing_s"].as_f64().unwrap() <= 0.3, "{name}: {wearer}");

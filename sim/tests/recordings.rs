@@ -28,6 +28,7 @@ fn mistakes_are_named_by_file_and_row() {
         ("t,a\n0,1\n1,inf\n", "r.csv:3: column `a` is `inf`; only finite numbers"),
         ("t,a\n0,1\nNaN,1\n", "r.csv:3: column `t` is `NaN`"),
         ("t,a\n0,1\n2,1\n1,1\n", "r.csv:4: time goes backwards, from 2 s to 1 s"),
+        ("t,a\n1,1\n1,2\n", "r.csv: every row has the time 1 s; a recipe can say the rows a second"),
         ("t,a\n0,1\n1,1,1\n", "r.csv:3: 3 cells, but the header has 2"),
         ("# a comment\nt,a\n0,1\n1,x\n", "r.csv:4: column `a` is `x`"),
         (
@@ -84,13 +85,21 @@ fn uneven_rows_columns_of_words_and_a_byte_order_mark_are_fine() {
     assert!((recording.rate_hz() - 30.0).abs() < 1e-9);
 }
 
-/// What else than in `cases.rs` a public recorder's file looked like: the recipe's layout, its text, and times and values of column `a`.
+/// What public recorders' files looked like: the recipe's layout, the text, and a column with its times and values.
 #[test]
 fn anybodys_table_is_read_as_its_recipe_says() {
     let map = "[[map]]\ncolumn = 'a'\nchannels = ['pvdf_1']\ngain = 1.0\n";
     for (layout, csv, name, times, values) in [
         ("[table]\ncomment = '%'\n", "t,a\n0,1\n% paused\n2,3\n", "a", [0.0, 2.0], [1.0, 3.0]),
         ("[table]\ndelimiter = \"\\t\"\n", "t\ta\n0\t1\n2\t3\n", "a", [0.0, 2.0], [1.0, 3.0]),
+        ("[table]\ndelimiter = ';'\ndecimal = ','\n", "t;a\n0,5;1,65\n2;-3\n", "a", [0.5, 2.0], [1.65, -3.0]),
+        (
+            "[table]\ndelimiter = ';'\ndecimal = ','\nheader = false\n[time]\nrate_hz = 2\n",
+            "7;1,65\n7;3\n",
+            "column_2",
+            [0.0, 0.5],
+            [1.65, 3.0],
+        ),
     ] {
         let recipe = Recipe::parse(&with_head(&format!("{layout}{map}")), "r.toml").unwrap();
         let read = Recording::timed(csv.as_bytes(), "r.csv", &recipe.table(), &recipe.time).unwrap();
@@ -110,6 +119,7 @@ fn anybodys_table_is_read_as_its_recipe_says() {
 fn a_table_that_is_written_otherwise_is_told_so() {
     for (csv, expected) in [
         ("t\ta\n0\t1\n1\t2\n", "a recipe says: [table] delimiter = \"\\t\""),
+        ("t;a\n0,1;1\n1,1;2\n", "a recipe says: [table] delimiter = \";\""),
         ("0,1.5\n0.1,1.6\n", "a recipe says: [table] header = false"),
         ("t,a\n0,\"1,5\"\n1,\"1,6\"\n", "a recipe says: [table] decimal = \",\""),
     ] {
