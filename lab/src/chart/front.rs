@@ -17,6 +17,7 @@ use tenax_sim::plot::sheet::{Axis, Mark, Panel, Series, Sheet};
 use tenax_sim::report::fate::Fate;
 use tenax_sim::session::controls;
 
+use super::table::scored::wilson;
 use super::{Chart, Progress, csv};
 use rivals::{BAND_MN, Grip, Rival};
 
@@ -145,12 +146,10 @@ fn paid(fates: &[&Fate]) -> Interval {
     mean(fates.iter().filter_map(|fate| fate.beyond_need_n)).map(|n| n.max(LEAST_N))
 }
 
-/// Wilson's interval of a part.
 fn part(some: usize, of: usize) -> Interval {
-    let (n, p) = (of.max(1) as f64, some as f64 / of.max(1) as f64);
-    let (middle, scale) = (p + WIDE * WIDE / (2.0 * n), 1.0 + WIDE * WIDE / n);
-    let wide = WIDE * (p * (1.0 - p) / n + WIDE * WIDE / (4.0 * n * n)).sqrt();
-    [(middle - wide) / scale, p, (middle + wide) / scale]
+    let all = of.max(1) as f64;
+    let (low, high) = wilson(some as f64 / all, all);
+    [low, some as f64 / all, high]
 }
 
 fn lost_panel(worlds: &[World]) -> Panel {

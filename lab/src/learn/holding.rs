@@ -19,10 +19,9 @@ const KNOCKS: u32 = 6;
 const SWINGS: u32 = 2;
 const RUNS: u32 = 2;
 
-/// False alarms of slip or of a warning, of slip, and of a warning.
+/// False alarms of slip, and of a warning.
 #[derive(Clone, Copy, Debug)]
 pub struct Holding {
-    pub any: Alarms,
     pub slip: Alarms,
     pub warning: Alarms,
 }
@@ -40,21 +39,21 @@ pub fn hold(
         done();
         minute
     });
-    let cards = all.try_reduce(<[Card; 3]>::default, |mut sum, minute| {
+    let cards = all.try_reduce(<[Card; 2]>::default, |mut sum, minute| {
         sum.iter_mut().zip(&minute).for_each(|(sum, card)| sum.add(card));
         Ok(sum)
     })?;
-    let [any, slip, warning] = cards.map(|card| card.false_alarms);
-    Ok(Holding { any, slip, warning })
+    let [slip, warning] = cards.map(|card| card.false_alarms);
+    Ok(Holding { slip, warning })
 }
 
-fn one(finger: &Finger, learned: &Bench, seed: u64) -> anyhow::Result<[Card; 3]> {
+fn one(finger: &Finger, learned: &Bench, seed: u64) -> anyhow::Result<[Card; 2]> {
     let scene = minute(finger, seed, true)?;
     let world = World::seeded(&scene, Seeds { making: finger.making, noise: seed });
     let trial = learned.clone().run(world, Judge::Touch);
     let held = Stretch { from_s: FROM_S, to_s: scene.duration_s(), doing: Doing::Hold };
     let card = |word| Card::of(&fate::spans(&trial.truth), &trial.verdicts(word), &[held]);
-    Ok([Word::Any, Word::Slip, Word::Warning].map(card))
+    Ok([Word::Slip, Word::Warning].map(card))
 }
 
 /// A minute by chance; without disturbances nothing happens in it. Fails if the scene cannot be made.

@@ -87,31 +87,17 @@ impl Score {
     }
 }
 
-/// Means of the runs in which one judge triggered the reflex.
-#[derive(Clone, Copy, Debug)]
-pub struct Told {
-    /// The object's last motion along the hand, s from the beginning of the lift.
-    pub secured_s: f64,
-    /// Sunk in the end, mm.
-    pub distance_mm: f64,
-}
-
-/// In the order of [`JUDGES`](super::reflex::JUDGES).
-pub fn told(runs: &[Three]) -> [Told; 3] {
+/// Means of the runs in which each judge triggered the reflex, in the order of [`JUDGES`](super::reflex::JUDGES).
+pub fn told(runs: &[Three]) -> Three {
     std::array::from_fn(|n| {
         let mean = |of: fn(&Reflexed) -> f64| {
             Spread::of(&runs.iter().map(|three| of(&three[n])).collect::<Vec<_>>()).mean
         };
-        Told { secured_s: mean(|run| run.secured_s), distance_mm: mean(|run| run.distance_mm) }
+        Reflexed { secured_s: mean(|run| run.secured_s), distance_mm: mean(|run| run.distance_mm) }
     })
 }
 
 impl Outcome {
-    /// Whether every random fingertip reported slip, or warned, in every slip, with its direction.
-    pub fn others_work(&self) -> bool {
-        self.others.iter().all(|other| other.first.missed == 0 && other.direction_wrong == 0)
-    }
-
     /// The mean lead of the worst random fingertip, s.
     pub fn worst_lead_s(&self) -> Option<f64> {
         let seen = self.others.iter().filter(|other| !other.first.lead_s.is_empty());

@@ -149,7 +149,7 @@ pub fn learn(steps: &[(Features, bool)], count: usize) -> Logistic {
     let (weights, bias) = equations::logistic(count, steps.len(), RIDGE, |n, row| {
         let (features, slips) = &steps[n];
         row.iter_mut().enumerate().for_each(|(k, to)| *to = at(features, k) - mean[k]);
-        (*slips, 1.0)
+        *slips
     });
     let shift: f64 = mean.iter().zip(&weights).map(|(mean, weight)| mean * weight).sum();
     Logistic {

@@ -114,7 +114,7 @@ pub fn a_unit(count: f64, units: f64) -> Between {
 }
 
 /// Wilson's interval at 95 %.
-fn wilson(part: f64, all: f64) -> (f64, f64) {
+pub fn wilson(part: f64, all: f64) -> (f64, f64) {
     const Z: f64 = 1.96;
     let z2 = Z * Z / all;
     let middle = (part + z2 / 2.0) / (1.0 + z2);
