@@ -17,8 +17,8 @@ pub struct Domain {
 }
 
 impl Domain {
-    fn hash(self, kind: &str) -> String {
-        if self.humble { NO_HASH.to_owned() } else { type_hash(kind) }
+    fn hash(self, kind: &str) -> &'static str {
+        if self.humble { NO_HASH } else { type_hash(kind) }
     }
 }
 
