@@ -81,12 +81,21 @@ struct Drawn {
     mv: [f64; 2],
     ripple: f64,
     hz: f64,
-    rise_s: f64,
-    noise: f64,
     lasts_s: f64,
-    /// mV that a loose contact gives now, and until when, s.
-    loose: ([f64; 2], f64),
+    wanders: [Wander; 2],
+    /// Part of its signal that a loose contact gives now, and until when, s.
+    loose: [(f64, f64); 2],
     state: [f64; 2],
+}
+
+/// A restless electrode's own: what it does owes nothing to the other one.
+#[derive(Clone, Copy, Debug, Default)]
+struct Wander {
+    wave: f64,
+    noise: f64,
+    hz: f64,
+    turn: f64,
+    rise_s: f64,
 }
 
 impl Drawn {
@@ -120,10 +129,9 @@ impl Drawn {
             mv,
             ripple: rng.random_range(0.0..0.3),
             hz: rng.random_range(0.8..2.2),
-            rise_s: 0.0,
-            noise: 0.0,
             lasts_s,
-            loose: ([0.0; 2], 0.0),
+            wanders: Default::default(),
+            loose: Default::default(),
             state: [f64::NAN; 2],
         };
         if fault != Fault::Restless {
@@ -132,16 +140,18 @@ impl Drawn {
         let stands = |[rest, contracts]: [i32; 2], share: f64| {
             f64::from(uv_of(rest + (f64::from(contracts - rest) * share) as i32)) / 1e3
         };
-        let ripple = rng.random_range(RESTLESS_RIPPLE);
-        let part = rng.random_range(0.0..1.0);
-        Self {
-            mv: calibrated.map(|levels| stands(levels, rng.random_range(RESTLESS_SHARE))),
-            ripple: ripple * part,
-            noise: ripple * (1.0 - part),
-            hz: level(rng, RESTLESS_HZ[0], RESTLESS_HZ[1]),
-            rise_s: level(rng, RESTLESS_RISE_S[0], RESTLESS_RISE_S[1]),
-            ..own
-        }
+        let wander = |_| {
+            let (ripple, part) = (rng.random_range(RESTLESS_RIPPLE), rng.random_range(0.0..1.0));
+            Wander {
+                wave: ripple * part,
+                noise: ripple * (1.0 - part),
+                hz: level(rng, RESTLESS_HZ[0], RESTLESS_HZ[1]),
+                turn: rng.random_range(0.0..TAU),
+                rise_s: level(rng, RESTLESS_RISE_S[0], RESTLESS_RISE_S[1]),
+            }
+        };
+        let wanders = [0, 1].map(wander);
+        Self { mv: calibrated.map(|levels| stands(levels, rng.random_range(RESTLESS_SHARE))), wanders, ..own }
     }
 
     /// Signal of a site's electrode `t_s` after the fault began, mV.
@@ -149,26 +159,24 @@ impl Drawn {
         if !self.has[site] {
             return muscle_mv;
         }
-        if t_s >= self.loose.1 {
-            self.loose = (
-                [0, 1].map(|n: usize| self.mv[n] * rng.random_range(0.0..1.0)),
-                t_s + rng.random_range(0.02..0.3),
-            );
+        if t_s >= self.loose[site].1 {
+            self.loose[site] = (rng.random_range(0.0..1.0), t_s + rng.random_range(0.02..0.3));
         }
         let mv = self.mv[site];
         let swing = 0.5 - 0.5 * (TAU * self.hz * t_s).cos();
         let target = match self.fault {
             Fault::Lifted => mv,
-            Fault::Loose => self.loose.0[site],
+            Fault::Loose => mv * self.loose[site].0,
             Fault::Humming => muscle_mv + mv,
             Fault::Swinging => muscle_mv + mv * swing,
             Fault::Creeping => return (muscle_mv + mv * t_s).min(3_000.0),
             Fault::Saturated | Fault::Broken => return mv,
             Fault::Restless => {
-                let wave = self.ripple * (TAU * self.hz * t_s + site as f64).sin();
+                let Wander { wave, noise, hz, turn, rise_s } = self.wanders[site];
+                let wave = wave * (TAU * hz * t_s + turn).sin();
                 // Anew as often as a loose contact.
-                let noise = self.noise * (2.0 * self.loose.0[site] / mv - 1.0);
-                let risen = (t_s / self.rise_s).min(1.0);
+                let noise = noise * (2.0 * self.loose[site].0 - 1.0);
+                let risen = (t_s / rise_s).min(1.0);
                 muscle_mv.min(mv) * (1.0 - risen) + mv * (risen + wave + noise)
             }
         };
