@@ -197,9 +197,10 @@ impl Emg {
         let mover = self.decide.mover();
         let raised = self.channels.each_ref().map(|channel| channel.raised);
         self.lone = self.proof.lone(levels, raised);
+        let both_fall = self.proof.both_fall(levels);
         for (site, part) in self.decide.parts().into_iter().enumerate() {
             let n = self.decide.site_of(site);
-            self.channels[n].trust.weigh(part, site == 0, wish == Wish::Rest || mover == n);
+            self.channels[n].trust.weigh(part, site == 0, wish == Wish::Rest || mover == n, both_fall);
         }
         let other = &self.electrodes[1 - mover];
         if wish != self.verdict.wish {

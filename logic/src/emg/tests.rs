@@ -218,6 +218,25 @@ fn a_restless_electrode_is_told_within_5_s_is_never_proven_and_hides_no_opening(
 
 // Shows W5.
 #[test]
+fn two_electrodes_that_wander_apart_are_told_within_5_s_and_two_that_relax_together_are_not() {
+    let told = |seconds: f64, of: &dyn Fn(f64) -> [f64; 2]| {
+        let mut emg = wearer();
+        run(&mut emg, 2.0, rest);
+        run(&mut emg, seconds, of);
+        [0, 1].map(|n| emg.quality(n) != Quality::Good)
+    };
+    for hz in [[0.05, 0.7], [0.7, 3.1], [5.0, 0.3]] {
+        let wanders = |n: usize, t: f64| 1.0 + 0.075 * (TAU * hz[n] * t).sin();
+        assert_eq!(told(5.0, &|t| [400.0 * wanders(0, t), 1_000.0 * wanders(1, t)]), [true; 2], "{hz:?}");
+    }
+    // Less than what an electrode alone is believed for.
+    let relaxes =
+        |t: f64| 1.0 + 0.03 * (TAU * 2.7 * t).sin() - 0.15 * (-((t % 3.0 - 1.5) / 0.2).powi(2)).exp();
+    assert_eq!(told(20.0, &|t| [450.0, 1_000.0].map(|mv| mv * relaxes(t))), [false; 2]);
+}
+
+// Shows W5.
+#[test]
 fn a_flexor_that_sticks_as_a_closing_ends_closes_no_longer() {
     let mut emg = wearer();
     run(&mut emg, 2.0, rest);

@@ -22,8 +22,8 @@ const CREEP_FRAMES: u16 = 200;
 const TOP_FRAMES: u16 = 120;
 /// Slow frames of activity without a pause: 60 s. One person has tone for more than 30 s.
 const ENDLESS_FRAMES: u16 = 4_800;
-/// Evidence against a muscle a slow frame of activity, by the other electrode's [`Part`], closing and opening: enough in 2.4 to 5.6 s.
-const AGAINST: [[u16; 4]; 2] = [[0, 7, 4, 3], [0, 5, 4, 0]];
+/// Evidence against a muscle a slow frame of activity, by the other electrode's [`Part`]: enough in 2.4 to 4.2 s.
+const AGAINST: [[u16; 4]; 2] = [[0, 7, 4, 4], [0, 5, 4, 4]];
 const ENOUGH: u16 = 1_344;
 const REST_TAKES: u16 = 40;
 /// Evidence below which the band was wide, or at rest, within the last second.
@@ -60,7 +60,7 @@ pub enum Quality {
     Creep,
     /// Constant within 1 %.
     Flat,
-    /// Active without the other electrode's part, within a narrow band, or for 60 s.
+    /// Active without the other electrode's part, without a muscle's falls, or for 60 s.
     Endless,
     Saturated,
 }
@@ -167,8 +167,8 @@ impl Trust {
         }
     }
 
-    /// The other electrode's part, once a slow frame. `counts`: it is not moving the hand itself.
-    pub fn weigh(&mut self, part: Part, closes: bool, counts: bool) {
+    /// The other electrode's part, once a slow frame. `counts`: it is not moving the hand itself. `both_fall`: as muscles do.
+    pub fn weigh(&mut self, part: Part, closes: bool, counts: bool, both_fall: bool) {
         self.run = match part {
             Part::Heard => self.run.max(0).saturating_add(1),
             Part::Unheard => self.run.min(0).saturating_sub(1),
@@ -179,7 +179,9 @@ impl Trust {
             (self.band_uv, self.lively, self.lone) = ([0, i32::MAX], false, false);
             return;
         }
-        if self.evidence >= ENOUGH {
+        if both_fall && part != Part::Unheard {
+            self.evidence = 0;
+        } else if self.evidence >= ENOUGH {
             self.lose(Quality::Endless);
             return;
         }
