@@ -166,6 +166,8 @@ struct Machine {
     was_lone: bool,
     parts: [Part; 2],
     crest: i32,
+    /// Crest of a closing that has not ended by its own share, though the other muscle may hide it; 0: none.
+    held: i32,
     trough: [i32; 2],
     /// Offset of rest, uV, Q8.
     drift: [i32; 2],
@@ -249,6 +251,7 @@ impl Machine {
             was_lone: false,
             parts: [Part::Rest; 2],
             crest: 0,
+            held: 0,
             trough: [0; 2],
             drift: [0; 2],
             hum_uv: [0; 2],
@@ -315,32 +318,37 @@ impl Machine {
         if own.is_none() {
             self.crest = 0;
         }
-        let ends = |n: usize| sites.ends[n].max((self.crest >> 8) - sites.fall[n]);
-        let begins = |n: usize| sites.begins[n].max(self.trough[n] + f.rise);
+        let ends = |crest: i32, n: usize| sites.ends[n].max((crest >> 8) - sites.fall[n]);
+        if own == Some(0) {
+            self.held = self.crest;
+        } else if closes < ends(self.held, 0) {
+            self.held = 0;
+        }
+        let held = self.held > 0;
+        let ends = |n: usize| ends(self.crest, n);
+        let begins = |n: usize| {
+            if n == 0 && held && place < f.place_stays[1] {
+                0
+            } else {
+                sites.begins[n].max(self.trough[n] + f.rise)
+            }
+        };
+        let both = opens >= sites.both[0] + if held { f.both } else { 0 };
         let busy = !blind[0] && place < f.place_begins && (closes >= f.busy || opens >= f.busy);
         self.since[0] = if busy { 0 } else { self.since[0].saturating_add(1) };
         self.since[1] = if self.wish == Wish::Open { 0 } else { self.since[1].saturating_add(1) };
         let calm =
             self.since[0] >= f.after_frames[1] || (self.since[0] >= f.after_frames[0] && opens >= STRONG);
         let may_open = calm && !blind[1] && closes < sites.both[1];
-        let may_close = !over && !blind[0] && (!blind[1] || closes >= ALONE);
+        let may_close = !over && !blind[0] && !both && (!blind[1] || closes >= ALONE);
         match self.wish {
             Wish::Open if over => Wish::Open,
             Wish::Open if (place >= f.place_stays[1] || blind[0]) && opens >= ends(1) => Wish::Open,
-            Wish::Close
-                if may_close
-                    && place <= f.place_stays[0]
-                    && opens < sites.both[0] + f.both / 2
-                    && closes >= ends(0) =>
-            {
-                Wish::Close
-            }
+            Wish::Close if may_close && place <= f.place_stays[0] && closes >= ends(0) => Wish::Close,
             Wish::Rest | Wish::Close if may_open && place >= f.place_begins && opens >= begins(1) => {
                 Wish::Open
             }
-            Wish::Rest | Wish::Open
-                if may_close && place <= f.place_begins && opens < sites.both[0] && closes >= begins(0) =>
-            {
+            Wish::Rest | Wish::Open if may_close && place <= f.place_begins && closes >= begins(0) => {
                 Wish::Close
             }
             _ => Wish::Rest,

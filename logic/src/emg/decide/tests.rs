@@ -89,6 +89,7 @@ struct State {
     since: [i32; 2],
     trough: [i32; 2],
     crest: i32,
+    held: i32,
     blind: [bool; 2],
     over: bool,
 }
@@ -99,15 +100,16 @@ const CALM: State = State {
     since: [1_000; 2],
     trough: [0; 2],
     crest: 0,
+    held: 0,
     blind: [false; 2],
     over: false,
 };
 
 fn asked(state: State) -> (Wish, Machine) {
-    let State { wish, mean, since, trough, crest, blind, over } = state;
+    let State { wish, mean, since, trough, crest, held, blind, over } = state;
     let sites = Sites { fall: [300; 2], ..sites() };
     let mut machine =
-        Machine { wish, mean: mean.map(|mean| mean * 16), since, trough, crest, ..Machine::new(&F) };
+        Machine { wish, mean: mean.map(|mean| mean * 16), since, trough, crest, held, ..Machine::new(&F) };
     (machine.wanted(&sites, blind, over), machine)
 }
 
@@ -152,6 +154,8 @@ fn opening_begins_from_its_share_and_place_while_the_other_site_is_calm() {
 fn closing_begins_from_its_share_and_place_while_nothing_opens() {
     let closes = State { mean: [480, 0, 480], ..CALM };
     let blind = State { blind: [false, true], ..closes };
+    // It was hidden, has not fallen, and no opening would go on.
+    let held = State { trough: [600, 0], held: 600 * 256, ..closes };
     for (state, begins) in [
         (closes, true),
         (State { mean: [479, 0, 480], ..closes }, false),
@@ -164,6 +168,12 @@ fn closing_begins_from_its_share_and_place_while_nothing_opens() {
         (State { mean: [900, 0, 480], ..blind }, true),
         (State { trough: [100, 0], mean: [499, 0, 480], ..closes }, false),
         (State { trough: [100, 0], mean: [500, 0, 480], ..closes }, true),
+        (State { mean: [299, 0, 399], ..held }, false),
+        (State { mean: [300, 0, 399], ..held }, true),
+        (State { mean: [300, 0, 400], ..held }, false),
+        (State { mean: [500, 921, 399], ..held }, true),
+        (State { mean: [500, 922, 399], ..held }, false),
+        (State { mean: [999, 0, 399], held: 0, ..held }, false),
     ] {
         let expected = if begins { Wish::Close } else { Wish::Rest };
         assert_eq!(wants(state), expected, "{:?}", state.mean);
@@ -185,8 +195,8 @@ fn a_wish_goes_on_until_it_falls_below_its_end_or_from_its_crest() {
         (closes, true),
         (State { mean: [279, 0, 520], ..closes }, false),
         (State { mean: [280, 0, 521], ..closes }, false),
-        (State { mean: [280, 771, 520], ..busy }, true),
-        (State { mean: [280, 772, 520], ..busy }, false),
+        (State { mean: [280, 921, 520], ..busy }, true),
+        (State { mean: [280, 922, 520], ..busy }, false),
         (State { over: true, ..closes }, false),
         (State { blind: [true, false], ..closes }, false),
         (State { mean: [699, 0, 520], ..crest }, true),
@@ -217,7 +227,7 @@ fn crest_trough_and_activity_are_remembered() {
     assert_eq!((after.crest, after.trough), (255_760, [700, 200]));
     let (_, after) = asked(State { mean: [1_200, 100, 0], ..closes });
     assert_eq!((after.crest, after.trough), (1_200 * 256, [1_200, 100]));
-    assert_eq!(asked(State { wish: Wish::Rest, ..closes }).1.crest, 0);
+    assert_eq!((after.held, asked(State { wish: Wish::Rest, ..closes }).1.crest), (after.crest, 0));
     let since = |state| asked(state).1.since;
     for (mean, blind, busy) in [
         ([450, 0, 479], false, true),
