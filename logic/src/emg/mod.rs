@@ -17,7 +17,7 @@ pub mod trust;
 
 use tenax_hal_shim::front_end::MYO_REST_MV;
 
-use self::decide::{Decide, Electrode, OVER_UV, Wish};
+use self::decide::{Decide, Electrode, OVER_UV, Part, Wish};
 use self::level::level_of;
 use self::mains::{Mains, WINDOW};
 use self::model::{EmgModel, Point};
@@ -197,8 +197,9 @@ impl Emg {
         let mover = self.decide.mover();
         let raised = self.channels.each_ref().map(|channel| channel.raised);
         self.lone = self.proof.lone(levels, raised);
-        let both_fall = self.proof.both_fall(levels);
-        for (site, part) in self.decide.parts().into_iter().enumerate() {
+        let parts = self.decide.parts();
+        let both_fall = parts != [Part::Rest; 2] && self.proof.both_fall(levels);
+        for (site, part) in parts.into_iter().enumerate() {
             let n = self.decide.site_of(site);
             self.channels[n].trust.weigh(part, site == 0, wish == Wish::Rest || mover == n, both_fall);
         }
