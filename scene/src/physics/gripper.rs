@@ -5,16 +5,17 @@ use std::collections::VecDeque;
 use tenax_hal_shim::channel::SCANS_PER_FRAME;
 use tenax_hal_shim::motor::{Duty, MotorDrive};
 
+use super::motor::Motor;
 use crate::file::sections;
 use crate::schedule::STEP_S;
 
-/// Of its motor only the mean of a pulse: short-circuited for the rest of it (slow decay), it draws `duty - v / v_max` of its stall
-/// current and moves the fingers with `v = v_max (duty - F / F_max)`, so that they stall at `duty F_max`. A load never opens the hand.
-/// A drive reaches the fingers one dead time later. A position-controlled gripper moves by whole steps, each as fast as it can. At the
-/// ends of its range and while the gear is jammed the motor is blocked.
+/// The [`Motor`] sets the finger speed: `v = v_max (duty - F / F_max)`, so the fingers stall at `duty F_max`. A
+/// load never opens the hand. A drive reaches the fingers one dead time later. A position-controlled gripper moves by whole steps,
+/// each as fast as it can. At the ends of its range and while the gear is jammed the motor is blocked.
 #[derive(Clone, Debug)]
 pub struct Gripper {
     parameters: sections::Gripper,
+    pub motor: Motor,
     pipeline: VecDeque<MotorDrive>,
     aim_mm: f64,
     /// Distance between the pads when nothing is compressed, mm.
@@ -30,6 +31,7 @@ impl Gripper {
         let dead_steps = (parameters.dead_time_ms.get() / 1e3 / STEP_S).round() as usize;
         Self {
             parameters: parameters.clone(),
+            motor: Motor::default(),
             pipeline: vec![MotorDrive::Coast; dead_steps].into(),
             aim_mm: parameters.opening_mm.get_ref().get(),
             opening_mm: parameters.opening_mm.get_ref().get(),
@@ -50,8 +52,8 @@ impl Gripper {
             MotorDrive::Open(duty) => (1.0, duty, 0.0, self.aim_mm >= range_mm),
         };
         let duty = part(duty);
-        let speed = if self.is_jammed || is_at_end { 0.0 } else { speed(duty, carried) };
-        self.current_part = duty - speed;
+        let speed = if self.is_jammed || is_at_end { 0.0 } else { self.motor.speed(duty, carried) };
+        self.current_part = self.motor.current(duty, speed);
         let before_mm = self.opening_mm;
         let moved_mm = way * speed * self.parameters.speed_mm_s.get() * STEP_S;
         self.aim_mm = (self.aim_mm + moved_mm).clamp(0.0, range_mm);
@@ -73,7 +75,7 @@ impl Gripper {
             .iter()
             .map(|drive| match drive {
                 MotorDrive::Coast => 0.0,
-                MotorDrive::Close(duty) => speed(part(*duty), load),
+                MotorDrive::Close(duty) => self.motor.speed(part(*duty), load),
                 MotorDrive::Open(duty) => -part(*duty),
             })
             .sum::<f64>()
@@ -126,12 +128,9 @@ fn part(duty: Duty) -> f64 {
     f64::from(duty.as_per_mille()) / 1e3
 }
 
-fn speed(duty: f64, load: f64) -> f64 {
-    (duty - load).max(0.0)
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::motor::Decay;
     use super::*;
     use crate::file::quantity::Play;
 
@@ -172,6 +171,19 @@ mod tests {
         assert_eq!(gripper.grip_n(WIDTH_MM, STIFFNESS_N_PER_MM), grip_n);
         run(&mut gripper, MotorDrive::Close(Duty::per_mille(100)), 1.0);
         assert_eq!(gripper.grip_n(WIDTH_MM, STIFFNESS_N_PER_MM), grip_n);
+    }
+
+    #[test]
+    fn a_bridge_that_coasts_between_pulses_closes_no_further_on_what_it_holds() {
+        let pressed_n = |decay| {
+            let mut gripper = Gripper::new(&hand());
+            run(&mut gripper, MotorDrive::Close(Duty::per_mille(200)), 20.0);
+            gripper.motor.decay = decay;
+            run(&mut gripper, MotorDrive::Close(Duty::per_mille(300)), 10.0);
+            gripper.grip_n(WIDTH_MM, STIFFNESS_N_PER_MM)
+        };
+        assert!((pressed_n(Decay::Slow) - 42.0).abs() < 0.5);
+        assert!((pressed_n(Decay::Fast) - 28.0).abs() < 0.5);
     }
 
     #[test]

@@ -8,6 +8,7 @@ pub(crate) mod gripper;
 pub(crate) mod hand;
 pub mod level;
 pub(crate) mod limit;
+pub mod motor;
 pub(crate) mod pitch;
 pub(crate) mod pull;
 pub mod stribeck;
