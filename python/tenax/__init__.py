@@ -308,7 +308,8 @@ class Board:
             try:
                 sequence, message = wire.decode(frame)
             except Garbled:
-                self.bad += 1
+                # An empty one resynchronises the line: a board begins with it.
+                self.bad += bool(frame)
                 continue
             message.sequence = sequence
             # A board that starts counts from its first message again.
