@@ -8,13 +8,8 @@ use anyhow::{Context, Result, ensure};
 pub const TARGET: &str = "thumbv7em-none-eabihf";
 const PACKAGE: &str = "tenax-firmware";
 const PROFILE: &str = "firmware";
-const NOT_FOR_THE_IMAGE: [&str; 5] = [
-    "CARGO_BUILD_TARGET",
-    "CARGO_ENCODED_RUSTFLAGS",
-    "RUSTC_WORKSPACE_WRAPPER",
-    "RUSTFLAGS",
-    "CARGO_MANIFEST_DIR",
-];
+const NOT_FOR_THE_IMAGE: [&str; 4] =
+    ["CARGO_BUILD_TARGET", "CARGO_ENCODED_RUSTFLAGS", "RUSTFLAGS", "CARGO_MANIFEST_DIR"];
 
 /// Builds the image of the workspace at `root`; its ELF file. `TENAX_CHIP`, such as `f412`, builds it for another chip, apart; what both have in
 /// common is compiled once. Fails if the compiler does; its messages are on standard error.
