@@ -1,7 +1,7 @@
 //! Quadrants of the force sensor that drift in a grasp, neighbours, opposites and all, either way, while the reflex may
 //! take back what it added.
 
-use crate::common::{asked, parsed, ran, text};
+use crate::common::{asked, parsed, ran_alone, text};
 
 const SETS: [&str; 5] = ["a", "ab", "ac", "abc", "abcd"];
 /// N/s. Slower ones stay below what skin yields: `TENAX_DRIFTS=6` plays them, too.
@@ -27,7 +27,7 @@ fn quadrants_that_drift_lose_nothing_and_are_told_where_that_matters() {
                 );
                 text += &format!("drift_per_s = {per_s}\nreason = \"it warms\"\n");
             }
-            let report = ran(&parsed(&text), asked("TENAX_SEED").unwrap_or(1)).report;
+            let report = ran_alone(&parsed(&text), asked("TENAX_SEED").unwrap_or(1)).report;
             let told = report.faults.iter().find(|fault| {
                 fault.at_s.is_some_and(|at_s| at_s > begins_s)
                     && fault.what.contains("gives no number: Creep")

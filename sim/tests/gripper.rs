@@ -1,11 +1,11 @@
 //! A gripper without myosensors: its reflex keeps what it lifts if the board knows that nobody wears it. The control is
 //! the same board that was not told so.
 
-use crate::common::{parsed, ran, text};
+use crate::common::{parsed, ran_alone, text};
 use tenax_sim::report::Report;
 
 fn report(scene: &str, seed: u64) -> Report {
-    ran(&parsed(&text(scene)), seed).report
+    ran_alone(&parsed(&text(scene)), seed).report
 }
 
 // Shows R8.
@@ -33,7 +33,7 @@ fn what_slips_while_a_robot_closes_is_answered() {
     let loud = format!("{quiet}\n[[command]]\nat_s = 0.2\nkind = \"set-noisy-duty-permille\"\nvalue = 50\n");
     for seed in 1..=4 {
         let [quiet, loud] = [&quiet, &loud].map(|text| {
-            let report = ran(&parsed(text), seed).report;
+            let report = ran_alone(&parsed(text), seed).report;
             (report.object.kept, report.slip.distance_mm.unwrap())
         });
         assert!(quiet.0 == Some(true) && quiet.1 < 10.0, "seed {seed}: {quiet:?}");

@@ -1,22 +1,20 @@
 //! The reflex on loads and disturbances that its scenes were not built with: a weight that comes at once, knocks of every ringing.
 //! `TENAX_SEEDS=12 cargo test --release -p tenax-sim --test all reflex -- --nocapture`
 
-use crate::common::{asked, parsed, text};
+use crate::common::{asked, parsed, ran_alone, text};
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use tenax_hal_shim::channel::FRAME_HZ;
 use tenax_hal_shim::wire::EventKind;
 use tenax_hal_shim::words::{Cause, GripMode};
-use tenax_sim::live::Use;
-use tenax_sim::session::{self, Board, Outcome};
+use tenax_sim::session::Outcome;
 
 fn seeds(default: u64) -> std::ops::RangeInclusive<u64> {
     1..=asked("TENAX_SEEDS").unwrap_or(default)
 }
 
 fn run(scene: &str, seed: u64) -> Outcome {
-    let line = Use { without_bound: true, ..Use::default() };
-    session::scene_served(&parsed(scene), seed, &Board::Host, line, &mut (), &mut |_| {}).unwrap()
+    ran_alone(&parsed(scene), seed)
 }
 
 /// Knocks at twice their height, each of which rings for 1 to 30 ms.

@@ -1,12 +1,12 @@
 //! What the reflex added and takes back: by the friction that slip has shown, never below what the hand was closed to.
 
-use crate::common::loaded;
+use crate::common::{loaded, ran_alone};
 use tenax_sim::report::Report;
 
 const MU_S: f64 = 0.25;
 
 fn ran(name: &str, seed: u64) -> Report {
-    crate::common::ran(&loaded(name), seed).report
+    ran_alone(&loaded(name), seed).report
 }
 
 // Shows R10.

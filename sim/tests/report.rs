@@ -1,6 +1,6 @@
 //! The report's keys: other people's programs read them.
 
-use crate::common::{parsed, ran, text};
+use crate::common::{parsed, ran, ran_alone, text};
 use serde_json::Value;
 use tenax_hal_shim::detector::DetectorId;
 use tenax_sim::plot::sheet::draw;
@@ -135,7 +135,7 @@ fn a_push_is_planned_for() {
 
 #[test]
 fn a_grip_that_is_enough_by_itself_is_its_own_bound() {
-    let outcome = ran(&parsed(&text("swung")), 1);
+    let outcome = ran_alone(&parsed(&text("swung")), 1);
     let bound = controls::bound(&parsed(&text("swung")), 1, &outcome.truth);
     assert!(
         outcome.truth.kept() && bound.kept() && bound.peak_grip_n < outcome.truth.peak_grip_n,
@@ -146,7 +146,7 @@ fn a_grip_that_is_enough_by_itself_is_its_own_bound() {
 #[test]
 fn the_controls_of_a_scene_are_worse_than_the_reflex() {
     let file = parsed(&text("array-pour"));
-    let outcome = ran(&file, 1);
+    let outcome = ran_alone(&file, 1);
     let controls = controls::controls(&file, 1, &outcome.truth);
     let names: Vec<&str> = controls.iter().map(|control| control.name.as_str()).collect();
     let each = ["s1", "s2", "hebbian", "mlp"];

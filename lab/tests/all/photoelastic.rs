@@ -97,8 +97,8 @@ fn head_alone(seed: u64, change: impl Fn(&str) -> String) -> (Outcome, Run) {
     let (_, text) = tenax_scene::builtin().iter().find(|(name, _)| *name == "head-alone").expect("the scene");
     let scene = SceneFile::parse(&change(text), "head-alone").unwrap_or_else(|error| panic!("{error}"));
     let mut run = Run::default();
-    let outcome =
-        session::scene_served(&scene, seed, &Board::Host, Use::default(), &mut run, &mut |_| {}).unwrap();
+    let line = Use { without_bound: true, ..Use::default() };
+    let outcome = session::scene_served(&scene, seed, &Board::Host, line, &mut run, &mut |_| {}).unwrap();
     (outcome, run)
 }
 

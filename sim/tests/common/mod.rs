@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use tenax_scene::{SceneFile, builtin};
+use tenax_sim::live::Use;
 use tenax_sim::replay::{Recipe, Recording};
 use tenax_sim::session::{self, Board, Outcome};
 
@@ -31,6 +32,12 @@ pub fn parsed(text: &str) -> SceneFile {
 
 pub fn ran(scene: &SceneFile, seed: u64) -> Outcome {
     session::scene(scene, seed, &Board::Host, &mut |_| {}).expect("it runs")
+}
+
+/// Without its bound, whose search takes longer than the run.
+pub fn ran_alone(scene: &SceneFile, seed: u64) -> Outcome {
+    let line = Use { without_bound: true, ..Use::default() };
+    session::scene_served(scene, seed, &Board::Host, line, &mut (), &mut |_| {}).expect("it runs")
 }
 
 pub fn shared(name: &str) -> PathBuf {
