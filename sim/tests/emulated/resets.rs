@@ -6,10 +6,11 @@ use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
 use tenax_hal_shim::wire::EventKind;
 use tenax_hal_shim::words::{Fault, Kept};
+use tenax_sim::board::Run;
 use tenax_sim::board::emulated::{Mishap, Options};
 use tenax_sim::board::kept::Sectors;
 
-use crate::{Swing, run};
+use crate::{Swing, plain, run};
 
 // Shows B2.
 #[test]
@@ -58,11 +59,10 @@ fn a_low_supply_is_told_and_waited_for() {
 // Shows B2.
 #[test]
 fn a_wrong_brown_out_level_is_told_and_left_to_the_probe() {
-    let told = |brown_out_level| {
-        let run = run(Swing::new(0.3).at_rest(), &Options { brown_out_level, ..Options::default() });
-        run.events.iter().any(|event| event.kind == EventKind::Fault(Fault::BrownOutLevel))
-    };
-    assert!(told(3) && !told(0));
+    let told =
+        |run: &Run| run.events.iter().any(|event| event.kind == EventKind::Fault(Fault::BrownOutLevel));
+    let run = run(Swing::new(0.3).at_rest(), &Options { brown_out_level: 3, ..Options::default() });
+    assert!(told(&run) && !told(plain()));
 }
 
 // Shows B2.
