@@ -34,7 +34,7 @@ pub struct Truth {
     pub camera: Vec<Seen>,
     let_go: bool,
     slide: Option<Slide>,
-    micro: Option<Micro>,
+    micro: Option<MicroRun>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,12 +65,6 @@ pub struct Row {
     /// The least grip force of each finger that would hold at this instant, N; 0 while the hand does not carry.
     pub needed_n: f64,
     pub margin_n: f64,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Micro {
-    begin_s: f64,
-    last_s: f64,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -204,14 +198,14 @@ impl Truth {
 
     fn micro(&mut self, step: &Step<'_>) {
         let t_s = step.t_s;
-        if let Some(run) = self.micro.take_if(|run| t_s - run.last_s > MICRO_PAUSE_S)
+        if let Some(run) = self.micro.take_if(|run| t_s - run.end_s > MICRO_PAUSE_S)
             && self.slide.is_none()
         {
-            self.micro_runs.push(MicroRun { begin_s: run.begin_s, end_s: run.last_s });
+            self.micro_runs.push(run);
         }
         if step.touch.let_go > 0 && step.touch.normal_n > TOUCH_N {
             self.micro_slips += step.touch.let_go as u64;
-            self.micro.get_or_insert(Micro { begin_s: t_s, last_s: t_s }).last_s = t_s;
+            self.micro.get_or_insert(MicroRun { begin_s: t_s, end_s: t_s }).end_s = t_s;
         }
     }
 }

@@ -6,7 +6,6 @@ mod bad_files;
 mod bases;
 mod brush;
 mod builtin;
-mod determinism;
 mod objects;
 mod patch;
 mod photoelastic;

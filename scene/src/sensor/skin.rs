@@ -111,13 +111,8 @@ impl SkinCamera {
         let speckle_e4 = self.parameters.speckle_e4.get() * self.noise.normal().abs();
         let moving_e4 = match self.goes_wrong() {
             // A spot of the background that leans on the object, or an object whose move was not found.
-            Some(seen_e4) => {
-                if pixels < SLIPS_PX {
-                    seen_e4
-                } else {
-                    0.0
-                }
-            }
+            Some(seen_e4) if pixels < SLIPS_PX => seen_e4,
+            Some(_) => 0.0,
             None => 1e4 * TEXTURE_PART * pixels.min(1.0),
         } + speckle_e4;
         let stays = libm::exp(-1.0 / (ANGLE_LASTS_S * self.parameters.rate_hz.get()));
