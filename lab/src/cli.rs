@@ -83,14 +83,3 @@ fn write(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
     out::note!("  {:<14}{}", "written", path.display());
     Ok(())
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use clap::CommandFactory;
-
-    #[test]
-    fn the_command_line_is_well_formed() {
-        Cli::command().debug_assert();
-    }
-}

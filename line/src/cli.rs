@@ -81,14 +81,3 @@ fn print(table: Table) -> anyhow::Result<ExitCode> {
     out::print(format_args!("{page}"))?;
     Ok(ExitCode::SUCCESS)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use clap::CommandFactory;
-
-    #[test]
-    fn the_command_line_is_well_formed() {
-        Cli::command().debug_assert();
-    }
-}

@@ -31,14 +31,3 @@ pub fn main() -> ExitCode {
         Command::Plot(args) => plot::main(&args),
     })
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use clap::CommandFactory;
-
-    #[test]
-    fn the_command_line_is_well_formed() {
-        Cli::command().debug_assert();
-    }
-}
