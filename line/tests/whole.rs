@@ -220,7 +220,7 @@ for n, path in enumerate(sys.argv[1:]):
 ";
 
 #[test]
-fn signals_leave_whole_files_and_a_full_disk_is_told_at_once() {
+fn signals_leave_whole_files() {
     let (served, folder) = (trusting(), tempfile::tempdir().unwrap());
     let at = |name: &str| folder.path().join(name).with_extension("mcap");
     for name in ["-INT", "-TERM", "-HUP"] {
@@ -231,11 +231,6 @@ fn signals_leave_whole_files_and_a_full_disk_is_told_at_once() {
         assert!(done.status.success(), "{name}: {}", String::from_utf8_lossy(&done.stderr));
         assert!(std::fs::read(at(name)).unwrap().ends_with(mcap_end()), "{name}");
     }
-    // Nobody is there to stop the recorder.
-    let (full, began) = (at("full"), Instant::now());
-    fills(100, &served.place, &full);
-    assert!(began.elapsed() < Duration::from_secs(20) && last_frame(&full) > 0);
-
     served.end();
 }
 

@@ -21,7 +21,7 @@ const PROGRAMS: [Program; 4] = [
         features: &[],
         commands: &[
             ("run", "a scene or a recording on the emulated board; report and figure"),
-            ("sweep", "scenes with many seeds, in shards"),
+            ("sweep", "scenes with many seeds, or drawn worlds"),
             ("plot", "draw a recording"),
         ],
     },

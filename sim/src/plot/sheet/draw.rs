@@ -4,7 +4,6 @@ use anyhow::anyhow;
 use plotters::coord::Shift;
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::{Axis, Mark, Panel, Series, Sheet};
 
@@ -30,8 +29,8 @@ pub fn svg(sheet: &Sheet) -> anyhow::Result<String> {
     {
         let root = SVGBackend::with_string(&mut svg, (WIDTH, height)).into_drawing_area();
         drawn(root.fill(&WHITE))?;
-        words(&root, &sheet.title, (MARGIN, 12), 22, (HPos::Left, VPos::Top))?;
-        words(&root, &sheet.subtitle, (MARGIN, 44), 14, (HPos::Left, VPos::Top))?;
+        words(&root, &sheet.title, (MARGIN, 12), 22)?;
+        words(&root, &sheet.subtitle, (MARGIN, 44), 14)?;
         let (_, below) = root.split_vertically(TITLE_HEIGHT);
         let (panels, foot) = below.split_vertically(rows * panel_height);
         let areas = panels.split_evenly((rows as usize, sheet.columns as usize));
@@ -58,7 +57,7 @@ fn draw_panel(area: &Area, panel: &Panel, own: &[&Series]) -> anyhow::Result<()>
             .set_label_area_size(LabelAreaPosition::Bottom, 44)
             .build_cartesian_2d(panel.x.places(), panel.y.places()),
     )?;
-    words(area, &panel.title, (70, 12), 16, (HPos::Left, VPos::Top))?;
+    words(area, &panel.title, (70, 12), 16)?;
     for band in &panel.bands {
         let corners = [(band.x.0, band.y.0), (band.x.1, band.y.1)];
         drawn(chart.draw_series([Rectangle::new(corners, band.colour.filled())]))?;
@@ -88,27 +87,19 @@ fn draw_panel(area: &Area, panel: &Panel, own: &[&Series]) -> anyhow::Result<()>
 fn draw_series(chart: &mut Chart, panel: &Panel, series: &Series) -> anyhow::Result<()> {
     // A gap in a curve is a value that is no number: each stretch between gaps is a line of its own.
     for stretch in series.points.split(|point| point.1.is_nan()) {
-        draw_stretch(chart, panel, series, stretch)?;
+        let shown = stretch.iter().filter(|(x, y)| panel.x.shows(*x) && panel.y.shows(*y));
+        let points: Vec<(f64, f64)> = shown.map(|(x, y)| (panel.x.place(*x), panel.y.place(*y))).collect();
+        let line = series.colour.stroke_width(2);
+        let marks = points.iter().copied();
+        match series.mark {
+            Mark::Line => drawn(chart.draw_series(LineSeries::new(points, line)))?,
+            Mark::Dashes => drawn(chart.draw_series(DashedLineSeries::new(points, 7, 5, line)))?,
+            Mark::Dots => {
+                drawn(chart.draw_series(marks.map(|at| Circle::new(at, 3, series.colour.filled()))))?
+            }
+            Mark::Crosses => drawn(chart.draw_series(marks.map(|at| Cross::new(at, 4, line))))?,
+        };
     }
-    Ok(())
-}
-
-fn draw_stretch(
-    chart: &mut Chart,
-    panel: &Panel,
-    series: &Series,
-    points: &[(f64, f64)],
-) -> anyhow::Result<()> {
-    let shown = points.iter().filter(|(x, y)| panel.x.shows(*x) && panel.y.shows(*y));
-    let points: Vec<(f64, f64)> = shown.map(|(x, y)| (panel.x.place(*x), panel.y.place(*y))).collect();
-    let line = series.colour.stroke_width(2);
-    let marks = points.iter().copied();
-    match series.mark {
-        Mark::Line => drawn(chart.draw_series(LineSeries::new(points, line)))?,
-        Mark::Dashes => drawn(chart.draw_series(DashedLineSeries::new(points, 7, 5, line)))?,
-        Mark::Dots => drawn(chart.draw_series(marks.map(|at| Circle::new(at, 3, series.colour.filled()))))?,
-        Mark::Crosses => drawn(chart.draw_series(marks.map(|at| Cross::new(at, 4, line))))?,
-    };
     Ok(())
 }
 
@@ -152,7 +143,7 @@ fn legend(
             Mark::Crosses => area.draw(&Cross::new((left + 13, y), 4, line)),
         };
         drawn(drew)?;
-        words(area, &series.name, (x + 34, y - letters / 2 + 1), letters, (HPos::Left, VPos::Top))?;
+        words(area, &series.name, (x + 34, y - letters / 2 + 1), letters)?;
         x += width;
     }
     Ok(if named.is_empty() { 0 } else { (y - top) / row + 1 })
@@ -181,15 +172,9 @@ fn number(value: f64) -> String {
     }
 }
 
-fn words(
-    area: &Area,
-    text: &str,
-    at: (i32, i32),
-    size: i32,
-    (side, height): (HPos, VPos),
-) -> anyhow::Result<()> {
-    let style = (FONTS, size).into_font().color(&INK).pos(Pos::new(side, height));
-    drawn(area.draw(&Text::new(text.to_owned(), at, style)))
+/// `at`: the upper left corner.
+fn words(area: &Area, text: &str, at: (i32, i32), size: i32) -> anyhow::Result<()> {
+    drawn(area.draw(&Text::new(text.to_owned(), at, (FONTS, size).into_font().color(&INK))))
 }
 
 /// plotters' error as ours; it does not go through `?` because it borrows.
