@@ -82,6 +82,7 @@ struct Sites {
     works_uv: [i32; 2],
     /// Share from which an opening begins beside a doubted closing electrode.
     beside: i32,
+    /// Difference of both rises as calibrated for closing, and what opening adds to it.
     close_ratio: i32,
     turn: i32,
     active_uv: [[i32; 2]; 2],
@@ -121,7 +122,7 @@ impl Sites {
             }),
             other: hears,
             works_uv: [0, 1].map(|n: usize| uv_of(rest[n] + span[n] * WORKS / 1_000)),
-            close_ratio: close[1] - close[0],
+            close_ratio: close[1] - rest[1] - (close[0] - rest[0]),
             turn: ((open[1] - open[0]) - (close[1] - close[0])).max(256),
             active_uv: [0, 1].map(|n: usize| {
                 [0, 1].map(|k: usize| uv_of(active[k][n].max(rest[n] + [300, 200][k]) - 1) + 1)
@@ -129,14 +130,13 @@ impl Sites {
         }
     }
 
-    /// Part of the other electrode in an activity of a site.
-    fn part(&self, n: usize, electrodes: [&Electrode; 2], level: [i32; 2]) -> Part {
+    /// Part of the other electrode in an activity of a site. `rise`: above rest and what was added to it.
+    fn part(&self, n: usize, electrodes: [&Electrode; 2], rise: [i32; 2]) -> Part {
         let n = n & 1;
         let (own, other) = (electrodes[n], electrodes[1 - n]);
         let Some(uv) = own.uv.filter(|&uv| uv >= self.works_uv[n]) else { return Part::Rest };
-        let share = (level_of(uv) - self.rest[n]).min(self.span[n]);
-        let expected = share * self.other[n] / self.span[n].max(1);
-        match 16 * (level[1 - n] - self.rest[1 - n]) {
+        let expected = (level_of(uv) - self.rest[n]).min(self.span[n]) * self.other[n] / self.span[n].max(1);
+        match 16 * rise[1 - n] {
             _ if other.uv.is_none() || self.other[n] < HEARS_AT_ALL => Part::Unknown,
             rise if rise < UNHEARD[n] * expected => Part::Unheard,
             // A doubted electrode vouches for nothing.
@@ -267,15 +267,16 @@ impl Machine {
         let over = electrodes[1].over;
         // `max(1)`, far below any span or turn, rules a division by zero out.
         let mut blind = electrodes.map(|electrode| electrode.uv.is_none() || electrode.doubted);
-        let mut level = [0, 1]
-            .map(|n: usize| electrodes[n].uv.map_or(sites.rest[n], |uv| level_of(uv - (self.drift[n] >> 8))));
-        self.parts = [0, 1].map(|n: usize| sites.part(n, electrodes, level));
+        let mut rise = [0, 1].map(|n: usize| {
+            electrodes[n].uv.map_or(0, |uv| level_of(uv - (self.drift[n] >> 8)) - sites.rest[n])
+        });
+        self.parts = [0, 1].map(|n: usize| sites.part(n, electrodes, rise));
         blind[0] |= electrodes[0].lone;
         if blind[0] {
-            level[0] = sites.rest[0];
+            rise[0] = 0;
         }
-        let share = [0, 1].map(|n: usize| (level[n] - sites.rest[n]) * 1_000 / sites.span[n].max(1));
-        let place = (level[1] - level[0] - sites.close_ratio) * 1_000 / sites.turn.max(1);
+        let share = [0, 1].map(|n: usize| rise[n] * 1_000 / sites.span[n].max(1));
+        let place = (rise[1] - rise[0] - sites.close_ratio) * 1_000 / sites.turn.max(1);
         let now = [share[0].min(1_300), share[1].min(1_300), place.clamp(-1_000, 2_000)];
         for (mean, now) in self.mean.iter_mut().zip(now) {
             *mean += (now * 16 - *mean) / f.mean_frames.max(1);
@@ -292,7 +293,7 @@ impl Machine {
         self.settle(wish);
         // A doubted closing electrode says nothing about the ratio.
         let lately = !blind[0] && self.since[0] < f.after_frames[0];
-        let strong = level[1] - sites.rest[1] - sites.span[1] >= if lately { f.firmer } else { 0 };
+        let strong = rise[1] - sites.span[1] >= if lately { f.firmer } else { 0 };
         let alone = || share[0] < sites.both[1] + f.both || electrodes[0].still;
         let rises = || !electrodes[0].lone || share[1] >= self.trough[1] + f.rise;
         let apart = || (blind[0] || place >= f.place_begins && alone()) && rises();

@@ -43,7 +43,7 @@ fn a_wearers_levels_are_those_of_the_calibration() {
     assert_eq!(weak.rest_uv.map(level_of), weak.rest);
     assert_eq!((weak.begins, weak.ends, weak.fall), ([480, 690], [280, 489], [960, 967]));
     assert_eq!((weak.both, weak.hears), ([622, 420], [Some(150), None]));
-    assert_eq!((weak.close_ratio, weak.turn, weak.beside), (-750, 1_940, 422));
+    assert_eq!((weak.close_ratio, weak.turn, weak.beside), (-850, 1_940, 422));
     assert_eq!((weak.other, weak.works_uv.map(level_of)), ([400, 150], [15_900, 15_997]));
     assert_eq!(weak.active_uv.map(|own| own.map(level_of)), [[16_037, 15_912], [16_134, 16_010]]);
     let noisy = Sites::of(&F, &model([[15_600, 15_700], [17_600, 16_200], [15_900, 17_800], [450, 510]]));
