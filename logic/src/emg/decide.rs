@@ -334,7 +334,9 @@ impl Machine {
                 sites.begins[n].max(self.trough[n] + f.rise)
             }
         };
-        let both = opens >= sites.both[0] + if held { f.both } else { 0 };
+        // A fist that is firmer than the calibrated one drives both muscles more.
+        let firmer = (closes - 1_000).max(0) * sites.span[0] / sites.span[1].max(1);
+        let both = opens >= sites.both[0] + firmer + if held { f.both } else { 0 };
         let busy = !blind[0] && place < f.place_begins && (closes >= f.busy || opens >= f.busy);
         self.since[0] = if busy { 0 } else { self.since[0].saturating_add(1) };
         self.since[1] = if self.wish == Wish::Open { 0 } else { self.since[1].saturating_add(1) };

@@ -162,6 +162,9 @@ fn closing_begins_from_its_share_and_place_while_nothing_opens() {
         (State { mean: [480, 0, 481], ..closes }, false),
         (State { mean: [480, 621, 480], ..closes }, true),
         (State { mean: [480, 622, 480], ..closes }, false),
+        // Both muscles more, by a firmer fist.
+        (State { mean: [1_100, 721, 480], ..closes }, true),
+        (State { mean: [1_100, 722, 480], ..closes }, false),
         (State { over: true, ..closes }, false),
         (State { blind: [true, false], ..closes }, false),
         (State { mean: [899, 0, 480], ..blind }, false),
