@@ -6,7 +6,6 @@
 //! finger that holds nothing or is at the force ceiling; while the force is unknown, all pulses share the blind
 //! budget of the [`Account`].
 
-pub mod lacks;
 pub mod relax;
 pub mod settings;
 pub mod slide;
@@ -17,12 +16,12 @@ use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::wire::Forces;
 use tenax_hal_shim::words::GripMode;
 
-use self::lacks::Lacks;
 use self::relax::Relax;
 use self::settings::GripConfig;
 use self::slide::{Carried, Heard, Slide};
 use self::stiffness::Stiffness;
 use crate::account::Account;
+use crate::force::friction::Lacks;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Grip {

@@ -9,7 +9,6 @@ use tenax_hal_shim::wire::Forces;
 
 use crate::detectors::{Description, Detector, Said, Sensed, confidence};
 use crate::force::settings::FrictionConfig;
-use crate::grip::lacks::Lacks;
 use crate::grip::slide::Carried;
 use crate::latest;
 
@@ -65,6 +64,13 @@ impl Shown {
         self.highest = self.highest.max(least);
         latest::push(&mut self.before, ratio);
     }
+}
+
+/// Missing normal force of a warning, mN. None if unknown.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Lacks {
+    pub warning_mn: Option<i32>,
+    pub by_s2: bool,
 }
 
 /// Grip that a pulse aims at after a warning, as a part of what friction needs, per mille.
