@@ -31,7 +31,7 @@ impl Pins {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Calibrated {
     Levels { rest_mv: [u16; 2], close_mv: [u16; 2], open_mv: [u16; 2] },
-    Words([i32; 10]),
+    Words([i32; 11]),
 }
 
 /// Names the field of a plant that is the one within it.

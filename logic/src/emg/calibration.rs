@@ -272,7 +272,8 @@ impl Calibration {
             [open.variance_of_difference(), close.variance_of_difference()],
         );
         let least = from_rest(close, closes).min(from_rest(open, opens)).min(turn);
-        EmgModel::new(rest.mean(), close.mean(), open.mean(), spread, least)
+        EmgModel::new(rest.mean(), close.mean(), open.mean(), spread, least)?
+            .with_close_spread(root(close.variance_of_difference()))
     }
 }
 

@@ -20,6 +20,8 @@ const UNHEARD: [i32; 2] = [4, 2];
 const HEARD: i32 = 8;
 /// Share of closing that closes even without a reading of the opening site, per mille.
 const ALONE: i32 = 900;
+/// Deviations of its calibrated place that no closing reaches.
+const APART: i32 = 3;
 const CALM_FRAMES: u16 = 40;
 const HUM_FRAMES: i32 = 21;
 const MOST_DRIFT_UV: i32 = 1_500_000;
@@ -85,6 +87,8 @@ struct Sites {
     /// Difference of both rises as calibrated for closing, and what opening adds to it.
     close_ratio: i32,
     turn: i32,
+    /// Place from which a strong opening opens at once.
+    apart: i32,
     active_uv: [[i32; 2]; 2],
 }
 
@@ -103,6 +107,7 @@ impl Sites {
         let fall = [0, 1].map(|n| f.fall.max(f.least_fall * 1_000 / span[n]));
         let hears = [close[1] - rest[1], open[0] - rest[0]];
         let both = [0, 1].map(|n| (hears[n] * 1_000 / span[1 - n]).max(0));
+        let turn = ((open[1] - open[0]) - (close[1] - close[0])).max(256);
         let active = [0, 1].map(|k: usize| {
             [0, 1].map(|n: usize| (rest[n] + span[n] * ACTIVE[k] / 1_000).min(level_of(ACTIVE_UV[k])))
         });
@@ -123,7 +128,8 @@ impl Sites {
             other: hears,
             works_uv: [0, 1].map(|n: usize| uv_of(rest[n] + span[n] * WORKS / 1_000)),
             close_ratio: close[1] - rest[1] - (close[0] - rest[0]),
-            turn: ((open[1] - open[0]) - (close[1] - close[0])).max(256),
+            turn,
+            apart: f.place_begins.max(APART * model.close_spread() * 1_000 / turn),
             active_uv: [0, 1].map(|n: usize| {
                 [0, 1].map(|k: usize| uv_of(active[k][n].max(rest[n] + [300, 200][k]) - 1) + 1)
             }),
@@ -296,7 +302,7 @@ impl Machine {
         let strong = rise[1] - sites.span[1] >= if lately { f.firmer } else { 0 };
         let alone = || share[0] < sites.both[1] + f.both || electrodes[0].still;
         let rises = || !electrodes[0].lone || share[1] >= self.trough[1] + f.rise;
-        let apart = || (blind[0] || place >= f.place_begins && alone()) && rises();
+        let apart = || (blind[0] || place >= sites.apart && alone()) && rises();
         if strong && !over && self.wish != Wish::Open && apart() {
             (self.wish, self.next, self.stands) = (Wish::Open, Wish::Open, 0);
             self.mean = now.map(|value| value * 16);

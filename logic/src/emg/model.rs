@@ -5,7 +5,7 @@ pub use tenax_hal_shim::words::CalibrationRefusal as Refusal;
 
 use super::level::{FLOOR_LEVEL, TOP_LEVEL, level_of};
 
-pub const MODEL_WORDS: usize = 10;
+pub const MODEL_WORDS: usize = 11;
 const VERSION: i32 = 2;
 
 pub(super) const fn octaves(permille: i32) -> i32 {
@@ -19,6 +19,8 @@ const LEAST_TURN: i32 = octaves(1_200);
 pub const LEAST_SEPARATION_PERMILLE: i32 = 2_200;
 /// Largest standard deviation of rest: 41 %.
 const NOISIEST_REST: i32 = octaves(500);
+/// Largest standard deviation of the difference of both levels in a contraction: it cannot be more than their range.
+const LARGEST_SPREAD: i32 = TOP_LEVEL - FLOOR_LEVEL;
 /// Levels of both electrodes, [`level_of`] of uV, flexor first.
 pub type Point = [i32; 2];
 
@@ -29,6 +31,8 @@ pub struct EmgModel {
     open: Point,
     spread: Point,
     separation_permille: i32,
+    /// Standard deviation of the difference of both levels while the hand closes, Q10 octaves; 0: not known.
+    close_spread: i32,
 }
 
 impl EmgModel {
@@ -39,10 +43,17 @@ impl EmgModel {
         spread: Point,
         separation_permille: i32,
     ) -> Result<Self, Refusal> {
-        let model = Self { rest, close, open, spread, separation_permille };
-        match model.check() {
+        Self { rest, close, open, spread, separation_permille, close_spread: 0 }.checked()
+    }
+
+    pub const fn with_close_spread(self, close_spread: i32) -> Result<Self, Refusal> {
+        Self { close_spread, ..self }.checked()
+    }
+
+    const fn checked(self) -> Result<Self, Refusal> {
+        match self.check() {
             Some(refusal) => Err(refusal),
-            None => Ok(model),
+            None => Ok(self),
         }
     }
 
@@ -73,6 +84,9 @@ impl EmgModel {
                 return Some(Refusal::RestNotQuiet);
             }
             n += 1;
+        }
+        if self.close_spread < 0 || self.close_spread > LARGEST_SPREAD {
+            return Some(Refusal::Damaged);
         }
         let (closes, opens) = (self.closing_site(), self.opening_site());
         if self.close[closes] - self.rest[closes] < LEAST_RISE {
@@ -119,13 +133,17 @@ impl EmgModel {
         self.spread
     }
 
+    pub const fn close_spread(&self) -> i32 {
+        self.close_spread
+    }
+
     /// Smallest distance of two states, in thousandths of their common standard deviation.
     pub const fn separation_permille(&self) -> i32 {
         self.separation_permille
     }
 
     pub const fn to_words(&self) -> [i32; MODEL_WORDS] {
-        let Self { rest, close, open, spread, separation_permille } = self;
+        let Self { rest, close, open, spread, separation_permille, close_spread } = self;
         [
             VERSION,
             rest[0],
@@ -137,15 +155,17 @@ impl EmgModel {
             spread[0],
             spread[1],
             *separation_permille,
+            *close_spread,
         ]
     }
 
     pub const fn from_words(words: [i32; MODEL_WORDS]) -> Result<Self, Refusal> {
-        let [version, rf, re, cf, ce, of, oe, sf, se, separation] = words;
+        let [version, rf, re, cf, ce, of, oe, sf, se, separation, close_spread] = words;
         if version != VERSION {
             return Err(Refusal::Damaged);
         }
-        Self::new([rf, re], [cf, ce], [of, oe], [sf, se], separation)
+        let (rest, close, open, spread) = ([rf, re], [cf, ce], [of, oe], [sf, se]);
+        Self { rest, close, open, spread, separation_permille: separation, close_spread }.checked()
     }
 }
 

@@ -18,7 +18,10 @@ pub fn of_emg(model: &EmgModel) -> EmgBytes {
 }
 
 pub fn emg(bytes: &[u8]) -> Option<EmgModel> {
-    EmgModel::from_words(words_of::<MODEL_WORDS>(bytes)?).ok()
+    // What a record of an earlier version has no word for is not known.
+    let mut own = [0; MODEL_WORDS];
+    own.iter_mut().zip(words(bytes)).for_each(|(slot, word)| *slot = word.cast_signed());
+    EmgModel::from_words(own).ok()
 }
 
 pub fn of_settings(config: &Config) -> SettingsBytes {
@@ -114,7 +117,8 @@ mod tests {
         let model = EmgModel::of_uv([50_000; 2], [400_000, 70_000], [80_000, 600_000]).unwrap();
         let bytes = of_emg(&model);
         assert_eq!(emg(&bytes), Some(model));
-        assert_eq!([&bytes[4..], &[0; 40], &[0xff; 40]].map(emg), [None; 3]);
+        assert_eq!([&bytes[4..], &bytes[..36], &[0; 44], &[0xff; 44]].map(emg), [None; 4]);
+        assert_eq!(emg(&bytes[..40]), Some(model), "of a version that kept no spread");
         let offsets = [0, -60_000, 60_000, -1];
         assert_eq!(zero(&of_zero(&offsets)), Some(offsets));
         assert_eq!([[0, 0, 60_001, 0], [i32::MIN; 4]].map(|uv| zero(&of_zero(&uv))), [None; 2]);

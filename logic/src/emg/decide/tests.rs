@@ -246,10 +246,15 @@ fn crest_trough_and_activity_are_remembered() {
 }
 
 fn read(levels: [i32; 2], since: i32, of: impl Fn(&mut [Electrode; 2])) -> Machine {
+    read_by(0, levels, since, of)
+}
+
+fn read_by(spread: i32, levels: [i32; 2], since: i32, of: impl Fn(&mut [Electrode; 2])) -> Machine {
     let mut electrodes = levels.map(|level| Electrode { uv: Some(uv_of(level)), ..Electrode::default() });
     of(&mut electrodes);
     let mut machine = Machine { since: [since; 2], ..Machine::new(&F) };
-    machine.calibrated(&sites(), electrodes.each_ref());
+    let model = model(WEAK).with_close_spread(spread).unwrap();
+    machine.calibrated(&Sites::of(&F, &model), electrodes.each_ref());
     machine
 }
 
@@ -268,7 +273,9 @@ fn what_is_above_all_that_was_calibrated_is_strong() {
         (true, read([16_500, 16_940], 1_000, still)),
         (true, read([16_758, 16_940], 1_000, still)),
         (false, read([16_759, 16_940], 1_000, still)),
-        (true, read([16_759, 16_940], 1_000, doubted)),
+        (true, read_by(400, [16_491, 16_940], 1_000, still)),
+        (false, read_by(400, [16_492, 16_940], 1_000, still)),
+        (true, read_by(400, [16_759, 16_940], 1_000, doubted)),
         (true, read([16_759, 16_940], 1_000, blind)),
         (true, read([15_600, 16_940], 39, none)),
         (false, read([15_600, 17_209], 38, none)),
