@@ -44,7 +44,6 @@ fn ten_seconds_without_a_lost_code() {
 
 /// The default scene's line of the golden gate (`tests/golden.rs`) on the emulated board.
 #[test]
-#[ignore = "30 s: `tenax check` compares the image's closed loop with the host's; `.ci/run` asks another chip's for it"]
 fn the_default_scene_decides_as_held() {
     let hash = of_run(&run(scene(session::DEFAULT_SCENE), &Options::default()));
     compare("emulated", &BTreeMap::from([(format!("{} 1", session::DEFAULT_SCENE), hash)]));
