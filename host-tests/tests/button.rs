@@ -25,13 +25,14 @@ fn saves_calibration(bench: &mut Bench, keeper: &mut Keeper) -> bool {
 // Shows W8.
 #[test]
 fn a_wearer_whose_electrodes_are_both_dead_lets_go_by_the_button() {
-    for dead_mv in [0.0, 3_300.0, 1_000.0] {
+    for (dead_mv, load_n) in [(0.0, 4.0), (3_300.0, 4.0), (1_000.0, 4.0), (0.0, 0.2)] {
         let mut bench = Bench::holding(41);
+        bench.load(load_n, load_n / 10.0);
         bench.pins_mv[MYO_FLEXOR..=MYO_EXTENSOR].fill(dead_mv);
         bench.run(8_000);
         bench.press_button(RELEASES);
         bench.slows.clear();
-        assert!(opens_throughout(&bench.run(2_000)), "{dead_mv} mV");
+        assert!(opens_throughout(&bench.run(2_000)), "{dead_mv} mV, {load_n} N");
         assert!(bench.ticks().skip(1).all(|tick| tick.source == DriveSource::Wearer));
         // It ends with what it held, soon after.
         bench.load(0.0, 0.0);

@@ -219,7 +219,7 @@ impl Fingertip {
         self.link.tick(self.behaviour.as_ref().is_some_and(Running::answers_slip));
         if u32::from(frame.slot()) % STEP_FRAMES == CONSENT_SLOT {
             self.consent();
-            if self.senses.muscles().is_calibrating() && !matches!(self.senses.grip, Grip::Unloaded) {
+            if self.senses.muscles().is_calibrating() && !self.senses.unloaded {
                 // The muscles must be able to open a hand that holds something or may hold something.
                 self.senses.muscles_mut().give_up(CalibrationRefusal::Loaded, &mut self.journal);
             }

@@ -200,10 +200,10 @@ impl Senses {
         touches || (self.warned_frames <= CLOSES_FRAMES && self.silent_frames >= SILENT_FRAMES)
     }
 
-    /// False if the finger is loaded.
+    /// False if the finger is loaded. What it has carried since the start may be an offset, a later load is none.
     #[must_use]
     pub fn zero(&mut self) -> bool {
-        let unloaded = self.force_sensor.zero();
+        let unloaded = (self.unloaded || self.pressed) && self.force_sensor.zero();
         if unloaded {
             self.gauges.zero();
         }

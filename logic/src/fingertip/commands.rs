@@ -11,7 +11,6 @@ use tenax_hal_shim::words::Line;
 
 use super::Fingertip;
 use crate::config::Config;
-use crate::grip::Grip;
 
 /// Settings of a transaction that is not complete.
 #[derive(Clone, Copy, Debug)]
@@ -85,22 +84,13 @@ impl Fingertip {
                 Ok(())
             }
             // The wearer's contractions move nothing meanwhile: they could not open a loaded hand.
-            Down::CalibrateEmg => match self.senses.grip {
-                Grip::Holds(_) => Err(Refusal::Loaded),
-                Grip::Unknown => Err(Refusal::SensorLost),
-                Grip::Unloaded => {
-                    self.senses.muscles_mut().begin_calibration(self.journal.frame(), false);
-                    Ok(())
-                }
-            },
-            Down::Zero if self.senses.forces.is_none() => Err(Refusal::SensorLost),
-            Down::Zero => {
-                if self.senses.zero() {
-                    Ok(())
-                } else {
-                    Err(Refusal::Loaded)
-                }
+            Down::CalibrateEmg | Down::Zero if self.senses.forces.is_none() => Err(Refusal::SensorLost),
+            Down::CalibrateEmg if self.senses.unloaded => {
+                self.senses.muscles_mut().begin_calibration(self.journal.frame(), false);
+                Ok(())
             }
+            Down::CalibrateEmg => Err(Refusal::Loaded),
+            Down::Zero => self.senses.zero().then_some(()).ok_or(Refusal::Loaded),
         }
     }
 

@@ -7,7 +7,6 @@ use tenax_hal_shim::words::{CalibrationRefusal, Line};
 use super::Fingertip;
 use crate::arming::{STEP_FRAMES, Signs};
 use crate::button::Press;
-use crate::grip::Grip;
 
 impl Fingertip {
     pub const fn button(&mut self, is_down: bool) {
@@ -66,7 +65,7 @@ impl Fingertip {
 
     #[inline(never)]
     fn press(&mut self) {
-        let empty = matches!(self.senses.grip, Grip::Unloaded);
+        let empty = self.senses.unloaded;
         let gate = &mut self.senses.gate;
         if gate.is_releasing() {
             gate.step_release(STEP_FRAMES);
