@@ -2,21 +2,10 @@
 
 use tenax_scene::SceneFile;
 
-const GOOD: &str = r#"name = "n"
-title = "t"
-from = "assumed"
-duration_s = 10
-slip_floor_mm_s = 1
-[contact]
-mu_s = 0.5
-mu_d = 0.4
-pad_length_mm = 18
-pitch_mm = 1
-[object]
-mass_kg = 0.2
-width_mm = 60
-stiffness_n_per_mm = 3
-[[fault]]
+const GOOD: &str = concat!(
+    "name = \"n\"\ntitle = \"t\"\n",
+    crate::common::grasp!(),
+    r#"[[fault]]
 at_s = 1
 channel = "fsr_a"
 kind = "dead"
@@ -30,7 +19,8 @@ at_s = 3
 for_s = 1
 intent = "close"
 level_mv = 500
-"#;
+"#
+);
 
 /// Text of the good file | its replacement, with `\n` for a new line | the line that the message names | its words.
 const MISTAKES: &str = r#"
@@ -52,6 +42,8 @@ at_s = 3 | at_s = 30 | 25 | 30 s, duration_s = 10
 "dead" | "gone" | 18 | gone, dead, stuck
 "dead" | "pressed" | 17 | press_n
 "dead" | "swapped" | 17 | with
+"dead" | "swapped"\nwith = "fsr_a" | 19 | with, itself
+"dead" | "dead"\nuntil_s = 0.5 | 19 | until_s = 0.5, at_s = 1
 value = 300 | value = 9000 | 23 | 9000, 50..=1500, s2-permille
 value = 300 | value = -1 | 23 | value
 value = 300\n |  | 22 | needs value

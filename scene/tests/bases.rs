@@ -4,24 +4,8 @@ use std::borrow::Cow;
 
 use tenax_scene::SceneFile;
 
-const BASE: &str = "from = \"assumed\"
-duration_s = 10
-slip_floor_mm_s = 1
-[contact]
-mu_s = 0.5
-mu_d = 0.4
-pad_length_mm = 18
-pitch_mm = 1
-[object]
-mass_kg = 0.2
-width_mm = 60
-stiffness_n_per_mm = 3
-[[knock]]
-at_s = 1
-peak_mv = 40
-ring_hz = 400
-decay_ms = 4
-";
+const BASE: &str =
+    concat!(crate::common::grasp!(), "[[knock]]\nat_s = 1\npeak_mv = 40\nring_hz = 400\ndecay_ms = 4\n");
 
 fn upon(own: &str, under: &'static str) -> Result<SceneFile, String> {
     let text = format!("name = \"n\"\nbase = \"under\"\ntitle = \"t\"\n{own}");

@@ -59,26 +59,30 @@ fn friction(scene: &SceneFile) -> Checked {
     Ok(())
 }
 
-/// Instants of the entries of all lists, each with its list's name.
-fn instants(table: &DeTable<'_>) -> Vec<(String, Spanned<Instant>)> {
+/// Instants of the entries of all lists, each with its list's name and the one before which it may not be.
+fn instants(table: &DeTable<'_>) -> Vec<(String, f64, Spanned<Instant>)> {
     let mut all = Vec::new();
     for (list, value) in table {
         for entry in value.get_ref().as_array().into_iter().flat_map(|entries| entries.iter()) {
+            let mut after_s = 0.0;
             for instant in ["at_s", "until_s"].into_iter().filter_map(|key| entry.get_ref().get(key)) {
-                let instant = Spanned::deserialize(ValueDeserializer::from(instant.clone()));
-                all.extend(instant.map(|instant| (list.get_ref().to_string(), instant)));
+                let instant = Spanned::<Instant>::deserialize(ValueDeserializer::from(instant.clone()));
+                let Ok(instant) = instant else { continue };
+                let at_s = instant.get_ref().get();
+                all.push((list.get_ref().to_string(), std::mem::replace(&mut after_s, at_s), instant));
             }
         }
     }
     all
 }
 
-fn end(scene: &SceneFile, instants: &[(String, Spanned<Instant>)]) -> Checked {
-    for (_, instant) in instants {
+fn end(scene: &SceneFile, instants: &[(String, f64, Spanned<Instant>)]) -> Checked {
+    for (_, after_s, instant) in instants {
         let at_s = instant.get_ref().get();
         demand(at_s <= scene.duration_s(), instant.span(), || {
             format!("{at_s} s is after the scene's end at duration_s = {}", scene.duration_s())
         })?;
+        demand(at_s >= *after_s, instant.span(), || format!("until_s = {at_s} is before at_s = {after_s}"))?;
     }
     Ok(())
 }
@@ -94,7 +98,7 @@ fn mass(scene: &SceneFile) -> Checked {
     Ok(())
 }
 
-fn one_story(scene: &SceneFile, instants: &[(String, Spanned<Instant>)]) -> Checked {
+fn one_story(scene: &SceneFile, instants: &[(String, f64, Spanned<Instant>)]) -> Checked {
     let wrong = |span, what: String| Err(Wrong { span, what });
     let (foreign, own): (&[&str], _) = match (&scene.object, &scene.robot) {
         (Some(_), Some(robot)) => {
@@ -111,8 +115,8 @@ fn one_story(scene: &SceneFile, instants: &[(String, Spanned<Instant>)]) -> Chec
     if let (None, Some(pitch)) = (&scene.object, &scene.pitch) {
         return wrong(pitch.span(), "[pitch] needs an [object]; this scene has a [robot]".to_owned());
     }
-    match instants.iter().find(|(list, _)| foreign.contains(&list.as_str())) {
-        Some((list, instant)) => {
+    match instants.iter().find(|(list, ..)| foreign.contains(&list.as_str())) {
+        Some((list, _, instant)) => {
             wrong(instant.span(), format!("[[{list}]] is nothing for a scene with {own}"))
         }
         None => Ok(()),
@@ -132,6 +136,9 @@ fn fault(fault: &SensorFault) -> Checked {
         format!("channel = \"{}\" is behind no switch", channel.name())
     })?;
     let exchanges = [FaultKind::Swapped, FaultKind::Bridged].contains(&kind);
+    if let Some(with) = &fault.with {
+        demand(with.get_ref() != channel, with.span(), || "with is the channel itself".to_owned())?;
+    }
     let own = [
         (kind == FaultKind::Pressed, fault.press_n.as_ref().map(Spanned::span), "pressed", "press_n"),
         (kind == FaultKind::Drift, fault.drift_per_s.as_ref().map(Spanned::span), "drift", "drift_per_s"),

@@ -7,6 +7,26 @@ use tenax_hal_shim::wire::Down;
 use tenax_scene::plant::{Pins, Plant};
 use tenax_scene::{SceneFile, Truth, World, builtin};
 
+/// A hand that grasps something, without name and title.
+macro_rules! grasp {
+    () => {
+        r#"from = "assumed"
+duration_s = 10
+slip_floor_mm_s = 1
+[contact]
+mu_s = 0.5
+mu_d = 0.4
+pad_length_mm = 18
+pitch_mm = 1
+[object]
+mass_kg = 0.2
+width_mm = 60
+stiffness_n_per_mm = 3
+"#
+    };
+}
+pub(crate) use grasp;
+
 pub fn parsed(text: &str) -> SceneFile {
     SceneFile::parse(text, "scene").unwrap_or_else(|error| panic!("{error}"))
 }
