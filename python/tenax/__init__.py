@@ -16,6 +16,7 @@ the first. Types of all messages: messages.pyi.
 
 from __future__ import annotations
 
+import contextlib
 import importlib
 import io
 import itertools
@@ -172,9 +173,8 @@ class _Recording(_File):
         from mcap.stream_reader import StreamReader
 
         super().__init__(io.open(path, "rb"))
-        self.path, self.records = path, StreamReader(self.file).records
+        self.path, self.records, self.truncated = path, StreamReader(self.file).records, False
         self.topic: int | None = None
-        self.truncated = False
 
     def read(self) -> bytes:
         from mcap.exceptions import UnsupportedCompressionError
@@ -187,14 +187,12 @@ class _Recording(_File):
                 elif isinstance(record, Message) and record.channel_id == self.topic:
                     self.came_ns = record.publish_time
                     # A protobuf message of one field of bytes: its tag, and its length in seven bits a byte.
-                    start = 1
-                    while record.data[start] & 0x80:
-                        start += 1
+                    start = next(n for n in range(1, 11) if not record.data[n] & 0x80)
                     return bytes(record.data[start + 1:])
         except Exception as error:
             # A chunk that is cut short is an error of its compression.
             if self.came_ns is None or isinstance(error, UnsupportedCompressionError):
-                raise
+                raise ValueError(f"{self.path}: {error or 'nothing of it is whole'}") from error
             self.truncated = True
             warnings.warn(f"{self.path}: its end is missing, as of a recorder that was killed; what is whole is read", stacklevel=3)
         raise EOFError
@@ -291,11 +289,11 @@ class Board:
         self.line.close()
 
     def __iter__(self) -> Iterator[messages.Up]:
-        while True:
-            try:
+        with contextlib.suppress(EOFError):
+            while True:
                 yield from self.read()
-            except EOFError:
-                return
+        if not self.messages and (self.bad or self.buffer):
+            raise ValueError("no message is in it: it is no board's line; `tenax record` writes one")
 
     def read(self) -> list[messages.Up]:
         """The messages that have come; waits a tenth of a second for the first."""

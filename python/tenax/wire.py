@@ -14,7 +14,6 @@ from typing import Any, Dict, Tuple
 
 _WIRE = json.loads((pathlib.Path(__file__).parent / "wire.json").read_text())
 VERSION = _WIRE["version"]
-SCHEMA = int(_WIRE["schema"], 16)
 TYPES: Dict[str, Any] = _WIRE["types"]
 # A message of each kind: its direction, its name, its frame.
 GOLDEN = [(direction, name, bytes.fromhex(data)) for direction, name, data in _WIRE["golden"]]
