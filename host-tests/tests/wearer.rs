@@ -225,7 +225,6 @@ proptest! {
         }
     }
 
-    // Shows R1.
     #[test]
     fn any_samples_whatever_are_survived(
         frames in proptest::collection::vec((any::<[u16; 14]>(), any::<bool>()), 1..200),
