@@ -40,7 +40,7 @@ fn every_setting_is_set_read_back_exported_imported_and_reset() {
     let wrong = [
         ("s1 = 30", "no setting is called s1; the settings are s1-mv"),
         ("s1-mv = [", "no TOML"),
-        ("s1-mv = 1.5", "whole"),
+        ("s1-mv = 1.5", "s1-mv = 1.5 is no whole number"),
     ];
     for (text, words) in wrong {
         std::fs::write(file, text).unwrap();

@@ -258,6 +258,10 @@ fn time_goes_on_where_the_board_is_reset() {
         let (first, last) = (&rows[0], &rows[rows.len() - 1]);
         assert!(((last[0] - first[0]) - (last[2] - first[2])).abs() < 0.5, "{topic}: {first:?} {last:?}");
     }
+    std::fs::remove_file(csv.join("tick.csv")).unwrap();
+    std::os::unix::fs::symlink("/dev/full", csv.join("tick.csv")).unwrap();
+    let (done, _, said) = tenax(&["play", path.to_str().unwrap(), "--csv", csv.to_str().unwrap()]);
+    assert!(!done && said.contains(&format!("folder {}: No space", csv.display())), "{said}");
 }
 
 /// The MCAP format's magic bytes end a whole file.

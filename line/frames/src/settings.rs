@@ -59,6 +59,6 @@ pub fn of_toml(text: &str) -> anyhow::Result<Vec<Setting>> {
 pub fn parse(text: &str) -> anyhow::Result<Setting> {
     let (name, value) = text.split_once('=').with_context(|| format!("{text} is no NAME=VALUE"))?;
     let id = named(name.trim())?;
-    let value: i32 = value.trim().parse().with_context(|| format!("{value} is no whole number"))?;
+    let value: i32 = value.trim().parse().with_context(|| format!("{name} = {value} is no whole number"))?;
     Ok(Setting { id: id.number(), value })
 }

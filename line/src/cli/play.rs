@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use anyhow::Context;
 use tenax_frames::link::Captured;
 use tenax_frames::record::csv;
 use tenax_frames::tool::out;
@@ -26,7 +27,8 @@ pub struct Args {
 }
 
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
-    for path in csv::export(&Captured::open(&args.file)?, &args.csv)? {
+    let paths = csv::export(&Captured::open(&args.file)?, &args.csv);
+    for path in paths.with_context(|| format!("cannot write to the folder {}", args.csv.display()))? {
         out::note!("  {:<14}{}", "written", path.display());
     }
     Ok(ExitCode::SUCCESS)

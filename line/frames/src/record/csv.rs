@@ -4,15 +4,13 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use anyhow::Context;
-
 use super::topics::timed;
 use crate::link::{Captured, Clock};
 use crate::protobuf::Value;
 
 /// Writes the values of a line's messages into `folder`; returns the files. Fails if one cannot be written.
 pub fn export(captured: &Captured, folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
-    std::fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
+    std::fs::create_dir_all(folder)?;
     let (mut clock, mut paths, mut files) = (Clock::default(), Vec::new(), BTreeMap::new());
     for (_, came_ns, frame) in captured.frames() {
         let Ok(heard) = frame else { continue };
@@ -22,15 +20,14 @@ pub fn export(captured: &Captured, folder: &Path) -> anyhow::Result<Vec<PathBuf>
                 ("time_s", format!("{:.4}", clock.seconds(row.frame))),
                 ("board_s", format!("{:.4}", clock.board_seconds(row.frame))),
                 ("host_s", host_s),
-            ];
-            let times = times.map(|(name, text)| (name.to_owned(), text));
+            ]
+            .map(|(name, text)| (name.to_owned(), text));
             let cells = row.fields.iter().flat_map(|(name, value)| cells(name, value));
             let (names, cells): (Vec<String>, Vec<String>) = times.into_iter().chain(cells).unzip();
             if !files.contains_key(&row.topic) {
                 let name = row.topic.trim_matches('/').replace('/', "-");
                 let path = folder.join(name).with_extension("csv");
-                let mut file = csv::Writer::from_path(&path)
-                    .with_context(|| format!("cannot write {}", path.display()))?;
+                let mut file = csv::Writer::from_path(&path)?;
                 file.write_record(&names)?;
                 paths.push(path);
                 files.insert(row.topic.clone(), file);

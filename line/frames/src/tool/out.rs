@@ -26,7 +26,7 @@ pub fn print(what: Arguments) -> anyhow::Result<()> {
     let mut out = io::stdout().lock();
     match out.write_fmt(what).and_then(|()| out.flush()) {
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Err(Closed.into()),
-        other => Ok(other?),
+        other => anyhow::Context::context(other, "cannot print"),
     }
 }
 
