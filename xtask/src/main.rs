@@ -35,8 +35,8 @@ const PROGRAMS: [Program; 4] = [
             ("calibrate", "sensors and the wearer's muscles"),
             ("config", "a board's settings"),
             ("record", "a board's line into a file"),
-            ("play", "a recording once more, or as CSV"),
-            ("tables", "channels, settings and wire messages as Markdown"),
+            ("play", "a recording as CSV"),
+            ("tables", "channels, settings and wire messages"),
         ],
     },
     Program {
