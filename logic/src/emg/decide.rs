@@ -136,12 +136,17 @@ impl Sites {
         }
     }
 
+    /// Rise of the other electrode with a rise of a site in a contraction, as calibrated.
+    fn expected(&self, n: usize, rise: i32) -> i32 {
+        rise.min(self.span[n]) * self.other[n] / self.span[n].max(1)
+    }
+
     /// Part of the other electrode in an activity of a site. `rise`: above rest and what was added to it.
     fn part(&self, n: usize, electrodes: [&Electrode; 2], rise: [i32; 2]) -> Part {
         let n = n & 1;
         let (own, other) = (electrodes[n], electrodes[1 - n]);
         let Some(uv) = own.uv.filter(|&uv| uv >= self.works_uv[n]) else { return Part::Rest };
-        let expected = (level_of(uv) - self.rest[n]).min(self.span[n]) * self.other[n] / self.span[n].max(1);
+        let expected = self.expected(n, level_of(uv) - self.rest[n]);
         match 16 * rise[1 - n] {
             _ if other.uv.is_none() || self.other[n] < HEARS_AT_ALL => Part::Unknown,
             rise if rise < UNHEARD[n] * expected => Part::Unheard,
@@ -213,6 +218,12 @@ impl Decide {
             Some(sites) => Some([sites.rest[1 - site], sites.hears[site]?]),
             None => Some([FLOOR_LEVEL, DEFAULT_HEARS[site]]),
         }
+    }
+
+    /// Rise of the other electrode below which it takes no part in an electrode's rise, Q10 octaves; 0: not known.
+    pub fn unheard(&self, electrode: usize, rise: i32) -> i32 {
+        let n = self.site_of(electrode);
+        self.sites.as_ref().map_or(0, |sites| UNHEARD[n] * sites.expected(n, rise) / 16)
     }
 
     /// By site.

@@ -69,7 +69,8 @@ impl Channel {
         (self.count > 0).then(|| self.sum_uv / self.count.max(1))
     }
 
-    fn end(&mut self, uv: Option<i32>, other_uv: i32) -> Electrode {
+    /// `lone`: it swings alone.
+    fn end(&mut self, uv: Option<i32>, other_uv: i32, lone: bool) -> Electrode {
         let over = self.over;
         (self.sum_uv, self.count, self.over) = (0, 0, false);
         if let Some(uv) = uv {
@@ -82,7 +83,7 @@ impl Channel {
             doubted: !trust.is_good(),
             still: trust.is_still(),
             hums: trust.hums(),
-            lone: trust.is_lone(),
+            lone: lone || trust.is_lone(),
         }
     }
 
@@ -192,11 +193,17 @@ impl Emg {
         let [flexor, extensor] = &mut self.channels;
         let change_uv = |channel: &Channel, uv: Option<i32>| uv.map_or(0, |uv| channel.trust.change_uv(uv));
         let changes_uv = [change_uv(flexor, uv[0]), change_uv(extensor, uv[1])];
-        self.electrodes = [flexor.end(uv[0], changes_uv[1]), extensor.end(uv[1], changes_uv[0])];
+        let raised = [flexor.raised, extensor.raised];
+        let [by_extensor, by_flexor] = [extensor.trust.is_good(), flexor.trust.is_good()];
+        let [flexor_alone, extensor_alone] = self.proof.swing_alone(levels, raised, &self.decide);
+        // What a doubted electrode does not hear may be a contraction.
+        self.lone = [flexor_alone && by_extensor, extensor_alone && by_flexor];
+        self.electrodes = [
+            flexor.end(uv[0], changes_uv[1], self.lone[0]),
+            extensor.end(uv[1], changes_uv[0], self.lone[1]),
+        ];
         let wish = self.decide.take(&self.electrodes);
         let mover = self.decide.mover();
-        let raised = self.channels.each_ref().map(|channel| channel.raised);
-        self.lone = self.proof.lone(levels, raised);
         let parts = self.decide.parts();
         let both_fall = parts != [Part::Rest; 2] && self.proof.both_fall(levels);
         for (site, part) in parts.into_iter().enumerate() {
@@ -204,16 +211,16 @@ impl Emg {
             self.channels[n].trust.weigh(part, site == 0, wish == Wish::Rest || mover == n, both_fall);
         }
         let other = &self.electrodes[1 - mover];
+        let [own_trust, other_trust] = [mover, 1 - mover].map(|n| &self.channels[n].trust);
         if wish != self.verdict.wish {
-            let [own, other] = [mover, 1 - mover].map(|n| &self.channels[n].trust);
-            self.beside_lone = other.quality() == Quality::Endless && own.is_fresh();
+            self.beside_lone = other_trust.quality() == Quality::Endless && own_trust.is_fresh();
         }
         // A deaf electrode can prove nothing, and disprove nothing.
         let lone = self.beside_lone && other.lone;
-        let deaf = other.uv.is_none() || other.hums || lone;
+        let is_out = other_trust.last_uv().is_none() || other_trust.quality() == Quality::Saturated;
+        let deaf = is_out || other.hums || lone;
         let hears = self.decide.hears().filter(|_| !deaf);
-        let trust = &self.channels[mover].trust;
-        let proven = self.proof.take(levels, wish, mover, trust, hears, raised[mover])
+        let proven = self.proof.take(levels, wish, mover, own_trust, hears, raised[mover])
             && !self.lone[mover]
             && !(lone && wish == Wish::Open && !self.decide.outweighs());
         let [flexor, extensor] = &self.channels;

@@ -1,7 +1,7 @@
 //! Proof that a wish is a muscle's. A fault lies under one electrode, and jumps or stands still: an opening is
 //! proven if the other electrode has risen out of proportion *and* its own envelope rose by degrees or turned.
 
-use super::decide::{OVER_UV, Wish};
+use super::decide::{Decide, OVER_UV, Wish};
 use super::level::{TOP_LEVEL, level_of};
 use super::model::Point;
 use super::trust::{TOP_UV, Trust};
@@ -52,9 +52,10 @@ struct Swings {
 }
 
 impl Swings {
-    /// Levels of both electrodes in a slow frame. True if this one swings alone.
+    /// Levels of both electrodes in a slow frame; `unheard`: rise of the other one below which it takes no part in a rise of this one. True
+    /// if this one swings alone.
     #[inline(never)]
-    fn take(&mut self, level: i32, other: i32, is_active: bool) -> bool {
+    fn take(&mut self, level: i32, other: i32, is_active: bool, unheard: impl Fn(i32) -> i32) -> bool {
         self.since += u16::from(self.lone > 0);
         if self.since > SWING_FRAMES {
             (self.lone, self.since) = (0, 0);
@@ -62,7 +63,7 @@ impl Swings {
         self.other[1] = self.other[1].max(other);
         match self.high {
             Some(high) if level <= high - SWING => {
-                if self.other[1] - self.other[0] >= 2 * LEAST_HEARD {
+                if self.other[1] - self.other[0] >= unheard(high - self.low).max(2 * LEAST_HEARD) {
                     self.lone = 0;
                 } else if self.was_active {
                     (self.lone, self.since) = ((self.lone + 1).min(LONE_SWINGS), 0);
@@ -145,15 +146,16 @@ impl Proof {
         self.hears = if heard == Some(true) { self.hears.saturating_add(1) } else { 0 };
         self.heard |= self.age <= HEARD_FRAMES && self.hears >= HEARD_FOR[usize::from(wish == Wish::Open)];
         if !self.proven {
-            self.proven = match (heard, wish) {
-                (Some(_), Wish::Open) => {
-                    let returned = self.returned > 0 && trust.has_turned_twice();
-                    self.apart = self.apart || returned || self.rise_apart();
-                    self.heard && self.apart && (trust.has_turned() || self.is_gradual(mover))
-                }
-                (Some(_), _) => self.heard || trust.is_joined(),
-                (None, _) => self.heard || trust.has_turned_twice(),
-            };
+            let is_heard = heard.is_some();
+            if is_heard && wish == Wish::Open {
+                let returned = self.returned > 0 && trust.has_turned_twice();
+                self.apart = self.apart || returned || self.rise_apart();
+            }
+            self.proven = !is_heard && trust.has_turned_twice()
+                || match wish {
+                    Wish::Open => self.heard && self.apart && (trust.has_turned() || self.is_gradual(mover)),
+                    _ => self.heard || is_heard && trust.is_joined(),
+                };
         }
         // What turned after a steady rise may be the other electrode's signal: it has to be heard again.
         let straight = self.proven && wish == Wish::Open && trust.is_straight();
@@ -169,10 +171,13 @@ impl Proof {
         self.proven
     }
 
-    pub fn lone(&mut self, levels: [Option<i32>; 2], active: [bool; 2]) -> [bool; 2] {
+    pub fn swing_alone(&mut self, levels: [Option<i32>; 2], active: [bool; 2], decide: &Decide) -> [bool; 2] {
         let [Some(flexor), Some(extensor)] = levels else { return [false; 2] };
         let [own, other] = &mut self.swings;
-        [own.take(flexor, extensor, active[0]), other.take(extensor, flexor, active[1])]
+        [
+            own.take(flexor, extensor, active[0], |rise| decide.unheard(0, rise)),
+            other.take(extensor, flexor, active[1], |rise| decide.unheard(1, rise)),
+        ]
     }
 
     fn keep(&mut self, levels: [Option<i32>; 2]) {

@@ -98,6 +98,26 @@ fn saturation_goes_on_opening_and_permits_no_closing() {
     assert!(run(&mut emg, 3.0, |t| [alive(900.0, t), 3_000.0]).iter().all(|v| v.wish == Wish::Rest));
 }
 
+// Shows W5.
+#[test]
+fn a_faulty_flexor_hides_no_opening_and_leaves_none_unproven() {
+    let faults: [fn(f64) -> f64; 4] =
+        [|_| 3_000.0, |_| 2_900.0, |_| 500.0, |t| 450.0 - 450.0 * (TAU * 1.3 * t).cos()];
+    for (n, flexor) in faults.into_iter().enumerate() {
+        let mut emg = wearer();
+        run(&mut emg, 1.0, rest);
+        run(&mut emg, 2.9, |t| [flexor(t), rest(t)[1]]);
+        // From a crest on. Of two that swing alone either may be the loose one.
+        for (from_s, is_proven) in [(2.9, true), (3.9, n < 3)] {
+            let opening = run(&mut emg, 0.8, |t| [flexor(from_s + t), alive(2_000.0, t)]);
+            let begun = opening.iter().position(|v| v.wish == Wish::Open).unwrap();
+            assert!(begun as f64 / HZ < 0.06 && part(&opening, Wish::Open) > 0.9, "{n} {from_s}: {begun}");
+            assert_eq!(opening.last().unwrap().proven, is_proven, "{n} {from_s}");
+            run(&mut emg, 0.2, |t| [flexor(from_s + 0.8 + t), rest(t)[1]]);
+        }
+    }
+}
+
 #[test]
 fn a_gap_of_50_ms_is_bridged() {
     let mut emg = wearer();

@@ -204,9 +204,14 @@ impl Trust {
         }
     }
 
-    /// Active without the other electrode.
+    /// Active without the other electrode, or higher for longer than a muscle.
     pub const fn is_lone(&self) -> bool {
-        self.lone || matches!(self.quality, Quality::Endless)
+        self.lone || self.is_at_top() || matches!(self.quality, Quality::Endless)
+    }
+
+    /// At the top of its range for 0.5 s.
+    const fn is_at_top(&self) -> bool {
+        self.at_top >= TOP_FRAMES / 3
     }
 
     /// At rest, or out of a narrow band, within the last second.
@@ -258,7 +263,7 @@ impl Trust {
 
     fn climb(&mut self, uv: i32) -> bool {
         let turned = self.active_for > 0 && uv < self.crest_uv - (self.crest_uv >> 5) - STILL_UV;
-        if self.active_for == 0 || uv >= TOP_UV || turned {
+        if self.active_for == 0 || turned {
             (self.crest_uv, self.climbing) = (uv, 0);
         } else {
             if self.climbing <= CREEP_FRAMES / 2 {
@@ -310,9 +315,9 @@ impl Trust {
         self.proofs >= 2
     }
 
-    /// Not doubted, nor at the top of its range for 0.5 s, nor constant for 0.6 s.
+    /// Not doubted, nor at the top of its range, nor constant for 0.6 s.
     pub const fn is_sound(&self) -> bool {
-        self.is_good() && self.at_top < TOP_FRAMES / 3 && self.flat < 3 * FLAT_FRAMES / 5
+        self.is_good() && !self.is_at_top() && self.flat < 3 * FLAT_FRAMES / 5
     }
 
     /// Neither a fall of 3 % nor a proof for 1 s.
