@@ -36,6 +36,8 @@ const JOINED_FRAMES: i8 = 30;
 /// Fall from a crest and rise from the trough after it that leave a narrow band, thirty-seconds: 22 and 28 %.
 const FALLS: i32 = 7;
 const RISES: i32 = 9;
+/// Fall within 50 ms of an electrode that comes off, or back on, eighths: no muscle of the recordings relaxes as fast while it works.
+const OFF_FALLS: i32 = 3;
 /// Good slow frames after which an electrode is believed again: 1 s.
 const BACK_FRAMES: u16 = 80;
 /// Slow frames between the points of a curve, 50 ms, and before its first one counts.
@@ -85,6 +87,7 @@ pub struct Trust {
     evidence: u16,
     /// A crest, or the trough after it, uV.
     band_uv: [i32; 2],
+    comes_off: bool,
     /// The band was wide within the last second.
     lively: bool,
     lone: bool,
@@ -139,8 +142,8 @@ impl Trust {
         self.stand(uv);
         let turned = self.climb(uv);
         let curves = curve_uv * PROOF_PART > uv.max(1) && !is_top && uv.max(middle).max(far) < TOP_UV;
-        // A fall by half in 50 ms is an electrode that has come off, or back on.
-        self.prove((turned || curves) && !echo && uv >= middle / 2);
+        self.comes_off = uv < middle - (middle >> 3) * OFF_FALLS;
+        self.prove((turned || curves) && !echo && !self.comes_off);
 
         let constant = if self.mains { Quality::Hum } else { Quality::Flat };
         let quality = if self.at_top >= TOP_FRAMES {
@@ -194,6 +197,10 @@ impl Trust {
     }
 
     fn wander(&mut self, uv: i32) {
+        if self.comes_off {
+            self.band_uv = [uv, i32::MAX];
+            return;
+        }
         let [crest, trough] = &mut self.band_uv;
         *trough = (*trough).min(uv);
         if *trough >= *crest - (*crest >> 5) * FALLS {

@@ -83,3 +83,18 @@ fn what_is_proven_must_prove_itself_again_once_it_no_longer_curves() {
     go_on(&mut watch, 1.0, 1.2, |t| level + 1_000.0 * (t - 1.0));
     assert!(!watch.has_turned_twice(), "a straight line is no muscle");
 }
+
+#[test]
+fn a_dip_of_a_muscle_leaves_a_narrow_band_and_one_of_a_loose_contact_does_not() {
+    for (tau_s, leaves) in [(0.1, true), (0.027, false)] {
+        let (mut watch, mut uv) = (Trust::default(), 400_000.0);
+        for frame in 0..120 {
+            let target_uv = if (40..70).contains(&frame) { 150_000.0 } else { 400_000.0 };
+            uv += (target_uv - uv) * (1.0 - (-1.0 / 80.0 / tau_s as f64).exp());
+            watch.take(Some(uv as i32));
+            watch.judge(ACTIVE_UV, uv as i32, 0);
+            watch.weigh(Part::Unknown, true, true, false);
+        }
+        assert_eq!(watch.is_joined(), leaves, "{tau_s}");
+    }
+}
