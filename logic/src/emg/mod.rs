@@ -41,6 +41,8 @@ struct Channel {
     over: bool,
     raised: bool,
     in_range: bool,
+    /// It swings, and the other electrode does not.
+    swings: bool,
 }
 
 impl Channel {
@@ -69,8 +71,7 @@ impl Channel {
         (self.count > 0).then(|| self.sum_uv / self.count.max(1))
     }
 
-    /// `lone`: it swings alone.
-    fn end(&mut self, uv: Option<i32>, other_uv: i32, lone: bool) -> Electrode {
+    fn end(&mut self, uv: Option<i32>, other_uv: i32) -> Electrode {
         let over = self.over;
         (self.sum_uv, self.count, self.over) = (0, 0, false);
         if let Some(uv) = uv {
@@ -83,16 +84,20 @@ impl Channel {
             doubted: !trust.is_good(),
             still: trust.is_still(),
             hums: trust.hums(),
-            lone: lone || trust.is_lone(),
+            lone: self.swings || trust.is_lone(),
         }
     }
 
+    fn is_good(&self) -> bool {
+        self.trust.is_good() && !self.swings
+    }
+
     fn is_known(&self) -> bool {
-        self.in_range && self.trust.is_good()
+        self.in_range && self.is_good()
     }
 
     fn is_active(&self) -> bool {
-        self.raised && self.trust.is_good()
+        self.raised && self.is_good()
     }
 }
 
@@ -118,7 +123,6 @@ pub struct Emg {
     proof: Proof,
     channels: [Channel; 2],
     pairs: u8,
-    lone: [bool; 2],
     electrodes: [Electrode; 2],
     /// The other electrode was doubted as active alone when the wish began.
     beside_lone: bool,
@@ -142,7 +146,6 @@ impl Emg {
             decide,
             proof: Proof::default(),
             pairs: 0,
-            lone: [false; 2],
             electrodes: Default::default(),
             beside_lone: false,
             verdict: Verdict::default(),
@@ -170,7 +173,7 @@ impl Emg {
         let n = channel.min(1);
         let channel = &mut self.channels[n];
         channel.read(uv);
-        let good = channel.trust.is_good();
+        let good = channel.is_good();
         self.verdict.active |= good & channel.raised;
         self.verdict.known &= good & channel.in_range;
         if n == 1 {
@@ -194,14 +197,11 @@ impl Emg {
         let change_uv = |channel: &Channel, uv: Option<i32>| uv.map_or(0, |uv| channel.trust.change_uv(uv));
         let changes_uv = [change_uv(flexor, uv[0]), change_uv(extensor, uv[1])];
         let raised = [flexor.raised, extensor.raised];
-        let [by_extensor, by_flexor] = [extensor.trust.is_good(), flexor.trust.is_good()];
-        let [flexor_alone, extensor_alone] = self.proof.swing_alone(levels, raised, &self.decide);
+        let [flexor_swings, extensor_swings] = self.proof.swing_alone(levels, raised, &self.decide);
         // What a doubted electrode does not hear may be a contraction.
-        self.lone = [flexor_alone && by_extensor, extensor_alone && by_flexor];
-        self.electrodes = [
-            flexor.end(uv[0], changes_uv[1], self.lone[0]),
-            extensor.end(uv[1], changes_uv[0], self.lone[1]),
-        ];
+        flexor.swings = flexor_swings && extensor.trust.is_good();
+        extensor.swings = extensor_swings && flexor.trust.is_good();
+        self.electrodes = [flexor.end(uv[0], changes_uv[1]), extensor.end(uv[1], changes_uv[0])];
         let wish = self.decide.take(&self.electrodes);
         let mover = self.decide.mover();
         let parts = self.decide.parts();
@@ -221,7 +221,7 @@ impl Emg {
         let deaf = is_out || other.hums || lone;
         let hears = self.decide.hears().filter(|_| !deaf);
         let proven = self.proof.take(levels, wish, mover, own_trust, hears, raised[mover])
-            && !self.lone[mover]
+            && !self.channels[mover].swings
             && !(lone && wish == Wish::Open && !self.decide.outweighs());
         let [flexor, extensor] = &self.channels;
         self.verdict = Verdict {
@@ -268,10 +268,8 @@ impl Emg {
     }
 
     pub fn quality(&self, channel: usize) -> Quality {
-        match self.channels[channel.min(1)].trust.quality() {
-            Quality::Good if self.lone[channel.min(1)] => Quality::LeadOff,
-            quality => quality,
-        }
+        let channel = &self.channels[channel.min(1)];
+        if channel.trust.is_good() && channel.swings { Quality::LeadOff } else { channel.trust.quality() }
     }
 
     /// 64 readings, one a slow frame, the oldest first, 128 uV a unit; None until full.
