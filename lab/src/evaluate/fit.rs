@@ -73,7 +73,7 @@ static PLAIN: Fitted = Fitted {
     least_spreads: 3,
     place_begins: 500,
     place_stays: [600, 400],
-    dwell: [3, 3, 3],
+    dwell: [3, 3, 3, 3],
     rest_frames: 320,
     after_frames: [32, 64],
     after_dwell: 8,

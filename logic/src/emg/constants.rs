@@ -21,7 +21,8 @@ pub struct Fitted {
     pub place_begins: i32,
     /// Place below which closing goes on, and above which opening does.
     pub place_stays: [i32; 2],
-    pub dwell: [i32; 3],
+    /// Time for which a wish has to stand: rest, rest after a closing whose place still fits, closing, opening.
+    pub dwell: [i32; 4],
     pub rest_frames: i32,
     /// Time after other activity in which no opening begins, and in which only a strong one does.
     pub after_frames: [i32; 2],
@@ -34,14 +35,15 @@ pub struct Fitted {
 }
 
 impl Fitted {
-    pub const COUNT: usize = 26;
+    pub const COUNT: usize = 27;
 
     pub fn all_mut(&mut self) -> [&mut i32; Self::COUNT] {
         let Self { mean_frames, begins, ends, hysteresis, least_end, fall, least_fall, .. } = self;
         let Self { crest_frames, rise, least_rise, least_spreads, place_begins, place_stays, .. } = self;
         let Self { dwell, rest_frames, after_frames, after_dwell, firmer, both, busy, .. } = self;
         let ([close_begins, open_begins], [close_ends, open_ends]) = (begins, ends);
-        let ([close_stays, open_stays], [rest_dwell, close_dwell, open_dwell]) = (place_stays, dwell);
+        let ([close_stays, open_stays], [rest_dwell, ripple_dwell, close_dwell, open_dwell]) =
+            (place_stays, dwell);
         let [after, long_after] = after_frames;
         [
             mean_frames,
@@ -61,6 +63,7 @@ impl Fitted {
             close_stays,
             open_stays,
             rest_dwell,
+            ripple_dwell,
             close_dwell,
             open_dwell,
             rest_frames,

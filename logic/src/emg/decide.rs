@@ -378,10 +378,12 @@ impl Machine {
     fn settle(&mut self, wish: Wish) {
         let f = self.fitted;
         let dwell = match wish {
+            // Ripple ends no closing while the place says closing.
+            Wish::Rest if self.wish == Wish::Close && self.mean[2] <= 16 * f.place_stays[0] => f.dwell[1],
             Wish::Rest => f.dwell[0],
             Wish::Close if self.since[1] < f.after_frames[0] => f.after_dwell,
-            Wish::Close => f.dwell[1],
-            Wish::Open => f.dwell[2],
+            Wish::Close => f.dwell[2],
+            Wish::Open => f.dwell[3],
         };
         self.stands = if wish == self.next { self.stands.saturating_add(1) } else { 1 };
         self.next = wish;

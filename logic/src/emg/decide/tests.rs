@@ -14,7 +14,7 @@ static F: Fitted = Fitted {
     least_spreads: 3,
     place_begins: 480,
     place_stays: [520, 400],
-    dwell: [2, 3, 6],
+    dwell: [2, 5, 3, 6],
     rest_frames: 341,
     after_frames: [40, 80],
     after_dwell: 12,
@@ -298,17 +298,20 @@ fn what_is_above_all_that_was_calibrated_is_strong() {
 
 #[test]
 fn a_wish_stands_for_its_dwell() {
-    let takes = |from: Wish, to: Wish, since: i32| {
-        let mut machine = Machine { wish: from, next: from, since: [1_000, since], ..Machine::new(&F) };
+    let takes = |from: Wish, to: Wish, since: i32, place: i32| {
+        let mean = [0, 0, 16 * place];
+        let mut machine = Machine { wish: from, next: from, since: [1_000, since], mean, ..Machine::new(&F) };
         (1..100).find(|_| {
             machine.settle(to);
             machine.wish == to
         })
     };
-    assert_eq!(takes(Wish::Close, Wish::Rest, 1_000), Some(2));
-    assert_eq!(takes(Wish::Rest, Wish::Close, 40), Some(3));
-    assert_eq!(takes(Wish::Rest, Wish::Close, 39), Some(12));
-    assert_eq!(takes(Wish::Rest, Wish::Open, 0), Some(6));
+    assert_eq!(takes(Wish::Close, Wish::Rest, 1_000, 520), Some(5), "ripple");
+    assert_eq!(takes(Wish::Close, Wish::Rest, 1_000, 521), Some(2));
+    assert_eq!(takes(Wish::Open, Wish::Rest, 1_000, 0), Some(2));
+    assert_eq!(takes(Wish::Rest, Wish::Close, 40, 0), Some(3));
+    assert_eq!(takes(Wish::Rest, Wish::Close, 39, 0), Some(12));
+    assert_eq!(takes(Wish::Rest, Wish::Open, 0, 0), Some(6));
 }
 
 #[test]
