@@ -1,5 +1,7 @@
 //! The constants of the wearer's model: their meaning here, their values in [`fitted`](super::fitted).
 
+use super::fitted::FITTED;
+
 /// Shares and places are per mille of what was calibrated, levels Q10 octaves, times slow frames (80 a
 /// second). Pairs are closing and opening.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -74,5 +76,11 @@ impl Fitted {
             both,
             busy,
         ]
+    }
+}
+
+impl Default for &Fitted {
+    fn default() -> Self {
+        &FITTED
     }
 }

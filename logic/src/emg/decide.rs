@@ -59,8 +59,9 @@ pub struct Electrode {
 }
 
 /// Activity of an electrode, and the other one's part in it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Part {
+    #[default]
     Rest,
     Unheard,
     Unknown,
@@ -69,7 +70,8 @@ pub enum Part {
 
 #[derive(Clone, Copy, Debug)]
 struct Sites {
-    electrode: [usize; 2],
+    /// Electrode 1 closes.
+    crossed: bool,
     rest: [i32; 2],
     rest_uv: [i32; 2],
     span: [i32; 2],
@@ -77,8 +79,8 @@ struct Sites {
     ends: [i32; 2],
     fall: [i32; 2],
     both: [i32; 2],
-    /// Least rise of the other electrode with each wish; None if its signal is too small.
-    hears: [Option<i32>; 2],
+    /// Least rise of the other electrode with each wish; 0: its signal is too small.
+    hears: [i32; 2],
     /// Its calibrated rise, Q10 octaves.
     other: [i32; 2],
     works_uv: [i32; 2],
@@ -94,8 +96,8 @@ struct Sites {
 
 impl Sites {
     fn of(f: &Fitted, model: &EmgModel) -> Self {
-        let electrode = [model.closing_site(), model.opening_site()];
-        let by_site = |point: [i32; 2]| electrode.map(|n| point[n & 1]);
+        let crossed = model.closing_site() == 1;
+        let by_site = |point: [i32; 2]| by_site(crossed, point);
         let (rest, close, open) = (by_site(model.rest()), by_site(model.close()), by_site(model.open()));
         let spread = by_site(model.spread());
         let span = [(close[0] - rest[0]).max(512), (open[1] - rest[1]).max(512)];
@@ -112,7 +114,7 @@ impl Sites {
             [0, 1].map(|n: usize| (rest[n] + span[n] * ACTIVE[k] / 1_000).min(level_of(ACTIVE_UV[k])))
         });
         Self {
-            electrode,
+            crossed,
             rest,
             rest_uv: rest.map(uv_of),
             span,
@@ -123,7 +125,7 @@ impl Sites {
             both: both.map(|share| share + f.both),
             hears: [0, 1].map(|n: usize| {
                 let least = (HEARS_SPREADS * spread[1 - n]).min(hears[n] / 2).max(hears[n] / 4);
-                (hears[n] >= HEARS_AT_ALL).then_some(least)
+                if hears[n] >= HEARS_AT_ALL { least } else { 0 }
             }),
             other: hears,
             works_uv: [0, 1].map(|n: usize| uv_of(rest[n] + span[n] * WORKS / 1_000)),
@@ -157,13 +159,17 @@ impl Sites {
     }
 }
 
+fn by_site<T>(crossed: bool, [flexor, extensor]: [T; 2]) -> [T; 2] {
+    if crossed { [extensor, flexor] } else { [flexor, extensor] }
+}
+
 #[derive(Clone, Debug)]
 pub struct Decide {
     sites: Option<Sites>,
     machine: Machine,
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 struct Machine {
     fitted: &'static Fitted,
     wish: Wish,
@@ -198,7 +204,7 @@ impl Decide {
     /// Site (0 closes, 1 opens) of electrode 0 (flexor) or 1 (extensor), or the other way round.
     pub fn site_of(&self, electrode: usize) -> usize {
         // `& 1` lets the compiler drop the bounds check, here and below.
-        self.sites.as_ref().map_or(electrode, |sites| sites.electrode[electrode & 1]) & 1
+        (electrode ^ usize::from(self.sites.as_ref().is_some_and(|sites| sites.crossed))) & 1
     }
 
     /// Envelopes, uV, at which an electrode becomes active and ceases to be.
@@ -215,7 +221,7 @@ impl Decide {
     pub fn hears(&self) -> Option<[i32; 2]> {
         let site = self.machine.site();
         match &self.sites {
-            Some(sites) => Some([sites.rest[1 - site], sites.hears[site]?]),
+            Some(sites) => (sites.hears[site] > 0).then(|| [sites.rest[1 - site], sites.hears[site]]),
             None => Some([FLOOR_LEVEL, DEFAULT_HEARS[site]]),
         }
     }
@@ -237,18 +243,18 @@ impl Decide {
     }
 
     pub fn strength_permille(&self) -> u16 {
-        let Machine { fitted: f, wish, mean, .. } = &self.machine;
+        let Machine { fitted, wish, mean, .. } = &self.machine;
         if *wish == Wish::Rest {
             return 0;
         }
         let site = self.machine.site();
-        let above = mean[site] / 16 - f.ends[site];
-        (above.min(STRONG - f.ends[site]).max(0) * 1_000 / (STRONG - f.ends[site]).max(1)) as u16
+        let (ends, range) = (fitted.ends[site], (STRONG - fitted.ends[site]).max(1));
+        ((mean[site] / 16 - ends).clamp(0, range) * 1_000 / range) as u16
     }
 
     pub fn take(&mut self, electrodes: &[Electrode; 2]) -> Wish {
         match &self.sites {
-            Some(sites) => self.machine.calibrated(sites, sites.electrode.map(|n| &electrodes[n & 1])),
+            Some(sites) => self.machine.calibrated(sites, by_site(sites.crossed, electrodes.each_ref())),
             None => self.machine.uncalibrated(electrodes),
         }
         self.machine.wish
@@ -257,22 +263,7 @@ impl Decide {
 
 impl Machine {
     fn new(fitted: &'static Fitted) -> Self {
-        Self {
-            fitted,
-            wish: Wish::Rest,
-            next: Wish::Rest,
-            stands: 0,
-            since: [i32::MAX; 2],
-            calm: 0,
-            mean: [0; 3],
-            was_lone: false,
-            parts: [Part::Rest; 2],
-            crest: 0,
-            held: 0,
-            trough: [0; 2],
-            drift: [0; 2],
-            hum_uv: [0; 2],
-        }
+        Self { fitted, since: [i32::MAX; 2], ..Self::default() }
     }
 
     fn site(&self) -> usize {

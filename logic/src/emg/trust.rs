@@ -130,8 +130,6 @@ impl Trust {
         let _full = self.window.push((self.last_uv / UNIT_UV).clamp(-32_768, 32_767) as i16);
         let place = usize::from(self.place) % (2 * LAG);
         let (middle, far) = (self.past_uv[(place + LAG) % (2 * LAG)], self.past_uv[place]);
-        let curve_uv = (uv - 2 * middle + far).abs();
-        let echo = (uv - far).abs() * ECHO_PART <= other_uv;
         self.past_uv[place] = uv;
         self.place = place as u8 + 1;
 
@@ -141,9 +139,12 @@ impl Trust {
         self.at_top = if is_top { self.at_top.saturating_add(1) } else { 0 };
         self.stand(uv);
         let turned = self.climb(uv);
-        let curves = curve_uv * PROOF_PART > uv.max(1) && !is_top && uv.max(middle).max(far) < TOP_UV;
+        let echo = || (uv - far).abs() * ECHO_PART <= other_uv;
+        let curve_uv = || (uv - 2 * middle + far).abs();
+        let curves = || curve_uv() * PROOF_PART > uv.max(1) && uv.max(middle).max(far) < TOP_UV;
         self.comes_off = uv < middle - (middle >> 3) * OFF_FALLS;
-        self.prove((turned || curves) && !echo && !self.comes_off);
+        let comes_off = self.comes_off;
+        self.prove(|| (turned || curves()) && !echo() && !comes_off);
 
         let constant = if self.mains { Quality::Hum } else { Quality::Flat };
         let quality = if self.at_top >= TOP_FRAMES {
@@ -243,13 +244,13 @@ impl Trust {
         }
     }
 
-    fn prove(&mut self, turns: bool) {
+    fn prove(&mut self, turns: impl FnOnce() -> bool) {
         self.since_proof = self.since_proof.saturating_add(1);
         let is_late = self.active_for >= FIRST_PROOF_FRAMES;
         if !is_late || self.since_proof > PROOF_LASTS {
             self.proofs = 0;
         }
-        if turns && is_late && (self.proofs == 0 || self.since_proof >= PROOF_APART) {
+        if is_late && (self.proofs == 0 || self.since_proof >= PROOF_APART) && turns() {
             (self.proofs, self.since_proof) = ((self.proofs + 1).min(2), 0);
         }
     }

@@ -39,22 +39,22 @@ fn swapped(levels: [[i32; 2]; 4]) -> [[i32; 2]; 4] {
 #[test]
 fn a_wearers_levels_are_those_of_the_calibration() {
     let weak = sites();
-    assert_eq!((weak.electrode, weak.rest, weak.span), ([0, 1], [15_600, 15_700], [1_250, 1_240]));
+    assert_eq!((weak.crossed, weak.rest, weak.span), (false, [15_600, 15_700], [1_250, 1_240]));
     assert_eq!(weak.rest_uv.map(level_of), weak.rest);
     assert_eq!((weak.begins, weak.ends, weak.fall), ([480, 690], [280, 489], [960, 967]));
-    assert_eq!((weak.both, weak.hears), ([622, 420], [Some(150), None]));
+    assert_eq!((weak.both, weak.hears), ([622, 420], [150, 0]));
     assert_eq!((weak.close_ratio, weak.turn, weak.beside), (-850, 1_940, 422));
     assert_eq!((weak.other, weak.works_uv.map(level_of)), ([400, 150], [15_900, 15_997]));
     assert_eq!(weak.active_uv.map(|own| own.map(level_of)), [[16_037, 15_912], [16_134, 16_010]]);
     let noisy = Sites::of(&F, &model([[15_600, 15_700], [17_600, 16_200], [15_900, 17_800], [450, 510]]));
     assert_eq!((noisy.begins, noisy.ends, noisy.fall), ([675, 728], [450, 500], [600, 571]));
-    assert_eq!((noisy.both, noisy.hears), ([538, 450], [Some(250), Some(150)]));
+    assert_eq!((noisy.both, noisy.hears), ([538, 450], [250, 150]));
     let loud = Sites::of(&F, &model([[17_800, 15_700], [20_000, 17_700], [17_700, 19_800], [100, 100]]));
     assert_eq!(
         loud.active_uv.map(|own| own.map(level_of)),
         [[18_100, 18_000], [15_700 + 4_100 * 350 / 1_000, 15_700 + 4_100 / 4]]
     );
-    assert_eq!((loud.both, loud.hears), ([787, 300], [Some(500), None]));
+    assert_eq!((loud.both, loud.hears), ([787, 300], [500, 0]));
     assert_eq!((loud.fall, loud.beside), ([545, 300], 587));
     let alike = Sites::of(&F, &model([[15_600; 2], [18_600, 16_800], [15_800, 16_900], [100; 2]]));
     assert_eq!(alike.beside, STRONG);
