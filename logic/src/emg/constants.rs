@@ -1,7 +1,5 @@
 //! The constants of the wearer's model: their meaning here, their values in [`fitted`](super::fitted).
 
-use super::fitted::FITTED;
-
 /// Shares and places are per mille of what was calibrated, levels Q10 octaves, times slow frames (80 a
 /// second). Pairs are closing and opening.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -44,8 +42,7 @@ impl Fitted {
         let Self { crest_frames, rise, least_rise, least_spreads, place_begins, place_stays, .. } = self;
         let Self { dwell, rest_frames, after_frames, after_dwell, firmer, both, busy, .. } = self;
         let ([close_begins, open_begins], [close_ends, open_ends]) = (begins, ends);
-        let ([close_stays, open_stays], [rest_dwell, ripple_dwell, close_dwell, open_dwell]) =
-            (place_stays, dwell);
+        let ([close_stays, open_stays], [rest, ripple, close, open]) = (place_stays, dwell);
         let [after, long_after] = after_frames;
         [
             mean_frames,
@@ -64,10 +61,10 @@ impl Fitted {
             place_begins,
             close_stays,
             open_stays,
-            rest_dwell,
-            ripple_dwell,
-            close_dwell,
-            open_dwell,
+            rest,
+            ripple,
+            close,
+            open,
             rest_frames,
             after,
             long_after,
@@ -81,6 +78,6 @@ impl Fitted {
 
 impl Default for &Fitted {
     fn default() -> Self {
-        &FITTED
+        &super::fitted::FITTED
     }
 }

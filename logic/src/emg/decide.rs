@@ -376,6 +376,10 @@ impl Machine {
             Wish::Close => f.dwell[2],
             Wish::Open => f.dwell[3],
         };
+        self.stand(wish, dwell);
+    }
+
+    fn stand(&mut self, wish: Wish, dwell: i32) {
         self.stands = if wish == self.next { self.stands.saturating_add(1) } else { 1 };
         self.next = wish;
         if self.stands >= dwell {
@@ -385,10 +389,7 @@ impl Machine {
 
     fn follow(&mut self, sites: &Sites, electrodes: [&Electrode; 2], wish: Wish) {
         let f = self.fitted;
-        let calm = self.wish == Wish::Rest
-            && wish == Wish::Rest
-            && self.mean[0] < 16 * f.ends[0]
-            && self.mean[1] < 16 * f.ends[1];
+        let calm = [self.wish, wish] == [Wish::Rest; 2] && (0..2).all(|n| self.mean[n] < 16 * f.ends[n]);
         self.calm = if calm { self.calm.saturating_add(1) } else { 0 };
         for (n, &Electrode { uv, hums, .. }) in electrodes.into_iter().enumerate() {
             let Some(uv) = uv else { continue };
@@ -432,11 +433,7 @@ impl Machine {
         } else {
             Wish::Rest
         };
-        self.stands = if wish == self.next { self.stands.saturating_add(1) } else { 1 };
-        self.next = wish;
-        if wish == Wish::Rest || self.stands >= DEFAULT_FRAMES {
-            self.wish = wish;
-        }
+        self.stand(wish, if wish == Wish::Rest { 1 } else { DEFAULT_FRAMES });
         self.mean = [16 * 750; 3];
     }
 }

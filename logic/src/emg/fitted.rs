@@ -3,9 +3,8 @@
 //! Model card. Fitted on UniBo-INAIL envelopes of Ottobock 13E200 electrodes, persons 1 to 4, 4 days, 2 arm
 //! postures, read 240 times a second, calibrated from two repetitions of the same session: a random search
 //! over a grid, scored by windows right, windows the wrong way, false motions at rest and latency. Several
-//! constants were then set by hand, `place_begins` and what ends a closing on MyoBock 1, 2 and persons 1 to 5
-//! of an armband, each pair of electrodes and contractions. Nobody was held apart. Faults and scenes were not
-//! used. `docs/emg.md` has the scores.
+//! constants were then set by hand, `place_begins` and the dwell of ripple on an armband, too. Nobody was held
+//! apart. Faults and scenes were not used. `docs/emg.md` has the scores.
 
 use super::constants::Fitted;
 
