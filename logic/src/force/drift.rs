@@ -54,6 +54,10 @@ const fn parts([a, b, c, d]: [i32; FSR_COUNT]) -> Parts {
     [a + b + c + d, a + b - c - d, a + d - b - c, a - b + c - d]
 }
 
+const fn tolerated_mn(load_mn: i32) -> i32 {
+    TOLERATED_MN + load_mn / TOLERATED_PART
+}
+
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cells {
     Known([i32; FSR_COUNT]),
@@ -173,29 +177,47 @@ impl Drift {
         }
     }
 
-    /// False: a shear that lifts the element off a cell breaks the rule, too.
-    fn contradict(&mut self, read_mn: [i32; FSR_COUNT], load_mn: i32) -> bool {
+    /// Contradiction beyond drift and the cells' gains, mN; None while a shear lifts the element off a cell, which breaks the rule, too: the
+    /// others then carry no more than that cell could.
+    #[inline(never)]
+    fn excess_mn(&self, read_mn: [i32; FSR_COUNT], load_mn: i32) -> Option<i32> {
+        let ([.., drifts], [.., reads]) = (self.drift(), parts(read_mn));
+        let now = reads - if drifts != 0 { self.off_mn } else { 0 };
+        // A load is below 2^17.
+        let excess_mn = now - ((i64::from(load_mn) * i64::from(self.gain)) >> GAIN_Q) as i32;
         let is_alone = self.set.is_power_of_two();
-        if (0..).zip(read_mn).any(|(n, mn)| mn < CARRIES_MN && !(is_alone && self.has(n))) {
+        let is_lifted = |(n, mn): (usize, i32)| {
+            let others_mn = if n % 2 == 0 { excess_mn } else { -excess_mn };
+            let lifts = self.learned < LEARN || others_mn > -tolerated_mn(load_mn);
+            mn < CARRIES_MN && !(is_alone && self.has(n)) && lifts
+        };
+        (!(0..).zip(read_mn).any(is_lifted)).then_some(excess_mn)
+    }
+
+    /// The cells cannot all be right in this reading.
+    pub fn is_contradicted(&self, read_mn: [i32; FSR_COUNT], load_mn: i32) -> bool {
+        let excess_mn = self.excess_mn(read_mn, load_mn).unwrap_or(0);
+        self.learned >= LEARN && excess_mn.abs() > tolerated_mn(load_mn)
+    }
+
+    fn contradict(&mut self, read_mn: [i32; FSR_COUNT], load_mn: i32) -> bool {
+        if self.learned == 0 {
+            (self.votes, self.gain) = ([0; SETS], 0);
+        }
+        let Some(now) = self.excess_mn(read_mn, load_mn) else {
             self.contradicts = 0;
             return false;
-        }
-        let ([.., drifts], [.., reads]) = (self.drift(), parts(read_mn));
-        // A load is below 2^17.
-        let now = reads - if drifts != 0 { self.off_mn } else { 0 };
+        };
         if self.learned < LEARN {
-            if self.learned == 0 {
-                (self.votes, self.gain) = ([0; SETS], 0);
-            }
             self.learned += 1;
             let part = ((i64::from(now) << GAIN_Q) / i64::from(load_mn.max(1))) as i32;
             let limit = (1 << GAIN_Q) / 4;
-            self.gain += (part.clamp(-limit, limit) - self.gain) >> LEARN_SHIFT;
+            self.gain = (self.gain + (part >> LEARN_SHIFT)).clamp(-limit, limit);
         }
-        let excess = now - ((i64::from(load_mn) * i64::from(self.gain)) >> GAIN_Q) as i32;
-        let beyond = excess.abs() > TOLERATED_MN + load_mn / TOLERATED_PART;
+        let excess = self.excess_mn(read_mn, load_mn).unwrap_or(now);
+        let beyond = excess.abs() > tolerated_mn(load_mn);
         self.contradicts = if beyond { self.contradicts.saturating_add(1) } else { 0 };
-        if drifts != 0 {
+        if self.drift()[3] != 0 {
             self.off_mn += excess.clamp(-CELL_FOLLOWS_MN, CELL_FOLLOWS_MN);
         }
         true
@@ -226,7 +248,7 @@ impl Drift {
         let load = load_mn << Q;
         let [from, to] = if self.rests == [0; 2] { [load; 2] } else { self.rests };
         let off = load - to;
-        if still < STILL_FOR || (off >> Q).abs() > TOLERATED_MN + load_mn / TOLERATED_PART {
+        if still < STILL_FOR || (off >> Q).abs() > tolerated_mn(load_mn) {
             self.rests = [(from + off - self.rate).clamp(1, LOAD_MAX << Q), load];
             return;
         }
@@ -239,8 +261,8 @@ impl Drift {
     }
 
     fn choose(&mut self, load_mn: i32) {
-        let contradicts = self.contradicts >= CONTRADICTS_FOR
-            || self.contradicting_mn().abs() > TOLERATED_MN + load_mn / TOLERATED_PART;
+        let contradicts =
+            self.contradicts >= CONTRADICTS_FOR || self.contradicting_mn().abs() > tolerated_mn(load_mn);
         if !contradicts && !self.changes {
             return;
         }

@@ -35,12 +35,15 @@ impl ForceSensor {
         closes: bool,
     ) -> Option<Forces> {
         self.last_uv = samples.map(uv_above_rest);
-        match self.drift.step(self.quadrants(), loaded_mn, opened) {
+        let read_mn = self.quadrants();
+        match self.drift.step(read_mn, loaded_mn, opened) {
             Cells::Known(quadrant_mn) => {
                 self.contact.feel(quadrant_mn, loaded_mn, closes);
                 let mut forces = forces(self.contact.centred(quadrant_mn), loaded_mn);
                 // The shear is as uncertain as the drift is large: what drifts with it cannot be told from the object's.
-                if carrying(&quadrant_mn) < AGREEING || self.drift.doubted() != 0 {
+                let is_doubted =
+                    self.drift.doubted() != 0 || self.drift.is_contradicted(read_mn, forces.load_mn);
+                if carrying(&quadrant_mn) < AGREEING || is_doubted {
                     forces.ratio_permille = None;
                 }
                 Some(forces)
@@ -174,6 +177,28 @@ mod tests {
             let before = sensor.process([pressed; 4], 600, false, false);
             (0..800).for_each(|_| sensor.follow());
             assert_eq!(sensor.process([pressed; 4], 600, false, false), before);
+        }
+    }
+
+    #[test]
+    fn a_quadrant_that_is_cut_gives_no_ratio_and_one_that_a_shear_lifts_does() {
+        let read = |sensor: &mut ForceSensor, cells_mv: [f64; FSR_COUNT]| {
+            let samples = cells_mv.map(|mv| sample_from_mv(mv.round() as u32));
+            let forces = sensor.process(samples, 600, false, false).unwrap();
+            sensor.think(600, 100);
+            forces.ratio_permille
+        };
+        let [held, sheared] = [1.0, 7.0].map(|shear| {
+            fsr_quadrants_n(8.0, shear / 2f64.sqrt(), shear / 2f64.sqrt()).map(|f| fsr_mv(f, f64::powf))
+        });
+        assert!(sheared.contains(&FSR_REST_MV.into()) && !held.contains(&FSR_REST_MV.into()));
+        for cut in 0..FSR_COUNT {
+            let mut sensor = ForceSensor::default();
+            assert!((0..80).all(|_| read(&mut sensor, held).is_some()));
+            let mut blinks = held;
+            blinks[cut] = FSR_REST_MV.into();
+            assert!((0..16).all(|_| read(&mut sensor, blinks).is_none()), "{cut}");
+            assert!(read(&mut sensor, held).is_some() && read(&mut sensor, sheared).is_some(), "{cut}");
         }
     }
 
