@@ -90,7 +90,7 @@ fn a_dip_of_a_muscle_leaves_a_narrow_band_and_one_of_a_loose_contact_does_not() 
         let (mut watch, mut uv) = (Trust::default(), 400_000.0);
         for frame in 0..120 {
             let target_uv = if (40..70).contains(&frame) { 150_000.0 } else { 400_000.0 };
-            uv += (target_uv - uv) * (1.0 - (-1.0 / 80.0 / tau_s as f64).exp());
+            uv += (target_uv - uv) * (1.0 - (-1.0f64 / 80.0 / tau_s).exp());
             watch.take(Some(uv as i32));
             watch.judge(ACTIVE_UV, uv as i32, 0);
             watch.weigh(Part::Unknown, true, true, false);
