@@ -179,7 +179,6 @@ impl Drift {
 
     /// Contradiction beyond drift and the cells' gains, mN; None while a shear lifts the element off a cell, which breaks the rule, too: the
     /// others then carry no more than that cell could.
-    #[inline(never)]
     fn excess_mn(&self, read_mn: [i32; FSR_COUNT], load_mn: i32) -> Option<i32> {
         let ([.., drifts], [.., reads]) = (self.drift(), parts(read_mn));
         let now = reads - if drifts != 0 { self.off_mn } else { 0 };
