@@ -177,8 +177,8 @@ impl Drift {
         }
     }
 
-    /// Contradiction beyond drift and the cells' gains, mN; None while a shear lifts the element off a cell, which breaks the rule, too: the
-    /// others then carry no more than that cell could.
+    /// Contradiction beyond drift and the cells' gains, mN. None while a shear lifts the rigid element off a cell, which breaks the rule, too:
+    /// by the other three, that cell would have to pull.
     fn excess_mn(&self, read_mn: [i32; FSR_COUNT], load_mn: i32) -> Option<i32> {
         let ([.., drifts], [.., reads]) = (self.drift(), parts(read_mn));
         let now = reads - if drifts != 0 { self.off_mn } else { 0 };
@@ -186,8 +186,8 @@ impl Drift {
         let excess_mn = now - ((i64::from(load_mn) * i64::from(self.gain)) >> GAIN_Q) as i32;
         let is_alone = self.set.is_power_of_two();
         let is_lifted = |(n, mn): (usize, i32)| {
-            let others_mn = if n % 2 == 0 { excess_mn } else { -excess_mn };
-            let lifts = self.learned < LEARN || others_mn > -tolerated_mn(load_mn);
+            let pulls_mn = if n % 2 == 0 { excess_mn } else { -excess_mn };
+            let lifts = self.learned < LEARN || pulls_mn > -tolerated_mn(load_mn);
             mn < CARRIES_MN && !(is_alone && self.has(n)) && lifts
         };
         (!(0..).zip(read_mn).any(is_lifted)).then_some(excess_mn)
@@ -199,6 +199,7 @@ impl Drift {
         self.learned >= LEARN && excess_mn.abs() > tolerated_mn(load_mn)
     }
 
+    /// False while a cell is lifted.
     fn contradict(&mut self, read_mn: [i32; FSR_COUNT], load_mn: i32) -> bool {
         if self.learned == 0 {
             (self.votes, self.gain) = ([0; SETS], 0);

@@ -85,8 +85,8 @@ fn what_is_proven_must_prove_itself_again_once_it_no_longer_curves() {
 }
 
 #[test]
-fn a_dip_of_a_muscle_leaves_a_narrow_band_and_one_of_a_loose_contact_does_not() {
-    for (tau_s, leaves) in [(0.1, true), (0.027, false)] {
+fn a_dip_of_a_muscle_proves_a_closing_and_one_of_a_loose_contact_does_not() {
+    for (tau_s, proves) in [(0.1, true), (0.027, false)] {
         let (mut watch, mut uv) = (Trust::default(), 400_000.0);
         for frame in 0..120 {
             let target_uv = if (40..70).contains(&frame) { 150_000.0 } else { 400_000.0 };
@@ -95,6 +95,6 @@ fn a_dip_of_a_muscle_leaves_a_narrow_band_and_one_of_a_loose_contact_does_not() 
             watch.judge(ACTIVE_UV, uv as i32, 0);
             watch.weigh(Part::Unknown, true, true, false);
         }
-        assert_eq!(watch.is_joined(), leaves, "{tau_s}");
+        assert_eq!(watch.is_joined(), proves, "{tau_s}");
     }
 }
